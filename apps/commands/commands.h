@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace softforce::apps {
+
+// A subcommand: its options are declared on construction, `run` does the work and returns the exit code.
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+Command AddRun(CLI::App* program);
+
+}  // namespace softforce::apps

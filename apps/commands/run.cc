@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+
+#include "commands/commands.h"
+#include "softforce/base/input_error.h"
+#include "softforce/pipeline/run.h"
+
+namespace softforce::apps {
+namespace {
+
+std::atomic<bool> stop_asked{false};
+
+// Ctrl-C ends after the current frame, with complete files; a second one ends at once.
+void AskToStop(int signal) {
+  stop_asked = true;
+  std::signal(signal, SIG_DFL);
+}
+
+struct RunArguments {
+  std::string scene;
+  std::string out;
+  std::vector<std::string> cameras;
+  std::string frames;
+  bool no_overlay = false;
+  pipeline::RunOptions options;
+};
+
+// "A:B" with either end left out.
+void ParseFrames(const std::string& text, pipeline::RunOptions* options) {
+  const size_t colon = text.find(':');
+  const auto number = [&](const std::string& digits, int otherwise) {
+    if (digits.empty()) return otherwise;
+    size_t read = 0;
+    int value = -1;
+    try {
+      value = std::stoi(digits, &read);
+    } catch (const std::exception&) {
+      read = 0;
+    }
+    if (read != digits.size() || value < 0) {
+      throw base::InputError("--frames", fmt::format("got \"{}\", expected A:B", text),
+                             "Example: --frames 10:20 for frames 10 up to and including 19.");
+    }
+    return value;
+  };
+  if (colon == std::string::npos) number("?", 0);
+  options->first_frame = number(text.substr(0, colon), options->first_frame);
+  options->end_frame = number(text.substr(colon + 1), options->end_frame);
+}
+
+int Run(RunArguments* arguments) {
+  pipeline::RunOptions& options = arguments->options;
+  options.out = arguments->out;
+  options.overlay = !arguments->no_overlay;
+  if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
+  for (const std::string& camera : arguments->cameras) {
+    const size_t equals = camera.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw base::InputError("--camera", fmt::format("got \"{}\", expected NAME=SOURCE", camera),
+                             "Example: --camera left=left.mp4");
+    }
+    options.sources[camera.substr(0, equals)] = camera.substr(equals + 1);
+  }
+  options.stop = &stop_asked;
+  std::signal(SIGINT, AskToStop);
+  std::signal(SIGTERM, AskToStop);
+  const pipeline::RunReport report = pipeline::Run(arguments->scene, options);
+  fmt::print("{}", report.FullReport());
+  return report.usable ? 0 : 1;
+}
+
+}  // namespace
+
+Command AddRun(CLI::App* program) {
+  auto arguments = std::make_shared<RunArguments>();
+  arguments->out = arguments->options.out.string();
+  CLI::App* app = program->add_subcommand("run", "Estimate forces from the scene's recording");
+  app->add_option("scene", arguments->scene, "Scene file (scene.yaml)")->required();
+  app->add_option("--out", arguments->out, "Folder for the results")->capture_default_str();
+  app->add_option("--camera", arguments->cameras,
+                  "NAME=SOURCE: video file of a camera instead of the scene's; may be repeated");
+  app->add_option("--frames", arguments->frames,
+                  "A:B: frames A up to but not including B, counted from 0; default all");
+  app->add_option("--registration-frames", arguments->options.registration_frames,
+                  "Frames searched for base fiducials to find where the cameras stand")
+      ->capture_default_str();
+  app->add_option("--common-model-error", arguments->options.tracker.estimator.common_model_error,
+                  "Model error that shifts or turns all markers together, as a share of the largest "
+                  "marker displacement (standard deviation)")
+      ->capture_default_str();
+  app->add_option("--local-model-error", arguments->options.tracker.estimator.local_model_error,
+                  "Model error of each marker by itself, as a share of the largest marker displacement "
+                  "(standard deviation)")
+      ->capture_default_str();
+  app->add_option("--overlay-width", arguments->options.overlay_width, "Width of overlay.mp4, px")
+      ->capture_default_str();
+  app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
+  app->add_flag("--vtu", arguments->options.vtu, "Write a ParaView series (results.pvd)");
+  return {app, [arguments] { return Run(arguments.get()); }};
+}
+
+}  // namespace softforce::apps

@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "commands/commands.h"
+#include "softforce/base/input_error.h"
+#include "softforce/base/version.h"
+
+namespace {
+
+constexpr int kBadInput = 2;
+
+int RunProgram(int argc, char** argv) {
+  CLI::App program{"softforce: external forces on soft bodies, seen through cameras"};
+  program.set_version_flag("--version", std::string("softforce ") + softforce::base::kVersion);
+  program.require_subcommand(1);
+  const std::vector<softforce::apps::Command> commands{softforce::apps::AddRun(&program)};
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : kBadInput;
+  }
+  for (const softforce::apps::Command& command : commands) {
+    if (command.app->parsed()) return command.run();
+  }
+  return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return RunProgram(argc, argv);
+  } catch (const softforce::base::InputError& error) {
+    fmt::print(stderr, "softforce: {}\n", error.what());
+    return kBadInput;
+  }
+}

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "softforce/camera/lens.h"
+
+namespace softforce::camera {
+
+struct Camera {
+  std::string name;
+  int width = 0, height = 0;  // px
+  BrownConrady lens;
+  Eigen::Isometry3d T_camera_rig = Eigen::Isometry3d::Identity();
+};
+
+// Cameras that stand fixed to each other.
+struct Rig {
+  std::vector<Camera> cameras;
+  std::optional<Eigen::Isometry3d> T_rig_robot;  // where the rig stands, if the file says so
+
+  // The number of the camera called `name`, or nothing.
+  std::optional<int> Find(const std::string& name) const;
+};
+
+}  // namespace softforce::camera

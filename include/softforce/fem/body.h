@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "softforce/fem/material.h"
+#include "softforce/mesh/surface.h"
+#include "softforce/mesh/tet_mesh.h"
+
+namespace softforce::fem {
+
+// A cable that runs freely through points of the body and out to a guide fixed in space. It pulls, never
+// pushes, and its directions follow the deformation.
+struct Cable {
+  std::string name;
+  std::vector<mesh::NodalWeights> points;  // attachment first, then via points towards the guide
+  Eigen::Vector3d guide;                   // m, robot frame
+};
+
+// A soft body: cells, what they are made of, where they are held, and what pulls them.
+struct Body {
+  mesh::TetMesh mesh;               // 4- or 10-node cells, at rest
+  std::vector<Material> materials;  // of each region of the mesh
+  std::vector<int> fixed_nodes;     // do not move
+  std::vector<Cable> cables;
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // m/s²
+  double density = 0;                                 // kg/m³
+
+  // Throws InputError, naming `where`, if any part of the body that hangs together is held at fewer than three
+  // points that span a plane, so that it could drift or spin away, or if a material is out of range.
+  void Check(const std::string& where) const;
+};
+
+}  // namespace softforce::fem

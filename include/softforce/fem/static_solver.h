@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "softforce/fem/body.h"
+
+namespace softforce::fem {
+
+enum class CableInput { kTension, kDisplacement };
+
+struct CableCommand {
+  CableInput input = CableInput::kTension;
+  double value = 0;  // N (≥ 0), or m by which the cable is shortened against the body at rest
+};
+
+// Everything that acts on the body besides gravity.
+struct LoadCase {
+  Eigen::Matrix3Xd forces;             // 3×N, N; dead loads on the nodes
+  std::vector<CableCommand> commands;  // one per cable of the body
+};
+
+// A shape of the body, and what its cables do there.
+struct Equilibrium {
+  Eigen::Matrix3Xd u;          // 3×N, m; displacement of the nodes
+  Eigen::VectorXd tension;     // N, per cable
+  Eigen::VectorXd shortening;  // m, per cable: length at rest − length now
+  LoadCase load;               // that it balances
+};
+
+struct StaticSolverOptions {
+  // Converged when no node would move further than this share of the body's diagonal.
+  double step_tolerance = 1e-7;
+  int max_iterations = 60;
+  // A factorised tangent is kept while each iteration shrinks the step at least by this factor.
+  double stale_contraction = 0.2;
+  int max_load_halvings = 8;
+
+  void Check() const;  // throws InputError naming the option
+};
+
+struct SolveSummary {
+  enum class Status { kNotRun, kConverged, kNotConverged };
+
+  Status status = Status::kNotRun;
+  int iterations = 0;      // Newton steps
+  int factorisations = 0;  // of the tangent
+  int load_steps = 0;      // 1 unless the load had to be cut
+  double reached_share = 0;  // of the way from the old load to the new one at which it last converged
+  double last_step = NAN;    // m, largest movement of a node in the last iteration
+
+  bool ok() const { return status == Status::kConverged; }
+  std::string BriefReport() const;
+};
+
+// How the body answers to small changes of the dead loads, at an equilibrium and with the commands of the
+// cables held: a cable commanded by displacement gives way in tension (paper eqs. 4 and 12).
+struct Sensitivity {
+  Eigen::MatrixXd du;        // 3N×k, m/N: K⁻¹ Hᵀ and its correction for the cables
+  Eigen::MatrixXd d_tension;  // cables×k
+};
+
+// Quasi-static equilibrium at large displacement:
+//
+//   f_int(x) + Σ_c t_c ∂ℓ_c/∂x = f + gravity      on the nodes that are free,
+//
+// with f_int from the cells' elastic law, t_c ≥ 0 the tension and ℓ_c the length of cable c; a cable
+// commanded by displacement d adds ℓ_c = ℓ_c(rest) − d or, where that would take a push, t_c = 0. Newton's
+// method with a line search on the potential energy (augmented by the cables' constraints); the tangent is
+// factorised by supernodal CHOLMOD on one thread and kept over iterations and calls while it still contracts.
+// If Newton fails the load is approached in smaller steps.
+//
+//   StaticSolver solver(body);
+//   Equilibrium state = solver.AtRest();
+//   SolveSummary summary = solver.Solve(load, &state);   // warm-started from `state`
+class StaticSolver {
+ public:
+  // Checks the body: throws InputError naming `where`.
+  StaticSolver(Body body, const std::string& where, const StaticSolverOptions& options = {});
+  ~StaticSolver();
+  StaticSolver(StaticSolver&&) noexcept;
+
+  const Body& body() const;
+
+  // The undeformed body without loads. With gravity, solve before use.
+  Equilibrium AtRest() const;
+
+  // Moves `state` to the equilibrium under `load`. If it does not converge, `state` is the last equilibrium
+  // reached on the way.
+  SolveSummary Solve(const LoadCase& load, Equilibrium* state);
+
+  // Solves for the k columns of `forces` (3N×k, N) at `state`. The tangent is factorised anew if any node
+  // stands further than `max_staleness` (m) from where it was last factorised.
+  Sensitivity Solve(const Equilibrium& state, const Eigen::MatrixXd& forces, double max_staleness);
+
+  // Elastic energy (J), for tests and reports.
+  double ElasticEnergy(const Equilibrium& state) const;
+
+  // Forces that the cells exert on the nodes, 3×N, N: f_int.
+  Eigen::Matrix3Xd InternalForces(const Eigen::Matrix3Xd& u) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softforce::fem

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "softforce/mesh/tet_mesh.h"
+
+namespace softforce::mesh {
+
+// A vector at every node, for ParaView's "Warp By Vector" and glyphs.
+struct PointField {
+  std::string name;         // with its unit: "displacement_m"
+  Eigen::Matrix3Xd values;  // 3×N
+};
+
+// Writes a VTU file with the mesh in metres (4- or 10-node cells), the fields, and, unless the mesh
+// is one unnamed region, the cell array "region": a region named by an integer has that value,
+// others have 1 + their index. Surface groups are not written. The same mesh gives the same bytes.
+// Throws InputError if the file cannot be written.
+void WriteVtu(const std::filesystem::path& path, const TetMesh& mesh,
+              const std::vector<PointField>& fields = {});
+
+}  // namespace softforce::mesh

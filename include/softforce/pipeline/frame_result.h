@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "softforce/estimation/force_estimator.h"
+
+namespace softforce::pipeline {
+
+struct ForceResult {
+  int candidate = -1;        // id in the scene
+  Eigen::Vector3d position;  // m, robot frame, on the deformed body
+  Eigen::Vector3d rest;      // m, the same material place on the body at rest
+  Eigen::Vector3d force;     // N
+  Eigen::Matrix3d covariance;  // N²
+
+  double NormSd() const;  // N, standard deviation of the force's norm
+};
+
+enum class MarkerStatus { kSeen, kOneCamera, kHidden, kRejected };
+
+const char* Name(MarkerStatus status);
+
+struct MarkerResult {
+  int id = -1;
+  MarkerStatus status = MarkerStatus::kHidden;
+  Eigen::Vector3d measured = Eigen::Vector3d::Constant(NAN);  // m; NaN if hidden
+  double sd = NAN;                                            // m, root mean square over the axes
+  Eigen::Vector3d model = Eigen::Vector3d::Constant(NAN);     // m
+};
+
+struct CableResult {
+  std::string name;
+  double tension = NAN;       // N
+  double displacement = NAN;  // m, shortening
+};
+
+// All that is known of one frame. If the status is not kOk the forces are empty and the model is where it was
+// expected.
+struct FrameResult {
+  int frame = -1;
+  double time_s = NAN;
+  estimation::ForceEstimate::Status status = estimation::ForceEstimate::Status::kNotRun;
+  std::string reason;
+  std::vector<ForceResult> forces;
+  std::vector<MarkerResult> markers;
+  std::vector<CableResult> cables;
+  double chi2 = NAN;
+  int degrees_of_freedom = 0;
+};
+
+}  // namespace softforce::pipeline

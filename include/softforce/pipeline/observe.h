@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "softforce/allocation/allocate.h"
+#include "softforce/camera/rig.h"
+#include "softforce/camera/triangulate.h"
+#include "softforce/vision/dots.h"
+#include "softforce/vision/tags.h"
+
+namespace softforce::pipeline {
+
+// A point of a marker that is measured by itself: the centre of a dot, or a corner of a tag.
+struct PredictedFeature {
+  Eigen::Vector3d position;    // m, robot frame
+  Eigen::Matrix3d covariance;  // m², of the prediction
+  Eigen::Vector3d normal;      // of the surface there, outward
+  double diameter = 0;         // m, of the dot; 0 for a corner
+};
+
+// What one camera saw of feature points. For dots the detections are anonymous; for tags they come with ids.
+struct CameraDetections {
+  std::vector<vision::Dot> dots;
+  std::vector<vision::Tag> tags;
+};
+
+// Where a feature point was measured.
+struct FeatureObservation {
+  enum class Status { kHidden, kSeen, kOneCamera, kInconsistent };
+
+  Status status = Status::kHidden;
+  Eigen::Vector3d position = Eigen::Vector3d::Constant(NAN);    // m, robot frame
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(NAN);  // m²; kSeen only
+  // k×3, k = 3 if kSeen, 2 if kOneCamera: see estimation::Observation.
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> whitening;
+  int cameras = 0;  // that saw it
+};
+
+struct ObserveOptions {
+  allocation::AllocationOptions allocation;
+  camera::TriangulationOptions triangulation;
+  // What a dot's or corner's covariance from the picture leaves out: lens model, compression, print. px.
+  double pixel_floor = 0.03;
+  double min_facing = 0.1;      // cosine between a marker's normal and the way to the camera
+  double size_tolerance = 1.7;  // a dot's picture may be this much larger or smaller than expected
+};
+
+// Which detection in which camera belongs to which feature, by prediction, gate and global assignment.
+// `pixels[feature]` are the sightings; for dots, corrected from the centroid of the disc's picture to the
+// projection of its centre.
+struct FeatureSightings {
+  std::vector<std::vector<camera::PixelObservation>> pixels;
+};
+
+// `threshold_displacement`: the paper's threshold, m; a detection further from its prediction is not it.
+FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
+                              const std::vector<PredictedFeature>& predicted,
+                              const std::vector<CameraDetections>& cameras,
+                              double threshold_displacement, const ObserveOptions& options);
+
+// From sightings to measured places: two cameras or more triangulate, one gives two equations.
+std::vector<FeatureObservation> Locate(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
+                                       const std::vector<PredictedFeature>& predicted,
+                                       const FeatureSightings& sightings,
+                                       const ObserveOptions& options);
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "softforce/pipeline/tracker.h"
+
+namespace softforce::pipeline {
+
+struct RunOptions {
+  std::filesystem::path out = "out";           // folder for the results; made if it is not there
+  std::map<std::string, std::string> sources;  // camera → file; instead of those in the scene
+  int first_frame = 0;
+  int end_frame = std::numeric_limits<int>::max();  // one past the last
+  int registration_frames = 10;  // that are searched for base fiducials before the first frame is estimated
+  bool overlay = true;           // write overlay.mp4
+  bool vtu = false;              // write a ParaView series
+  bool show_progress = true;
+  int overlay_width = 1920;  // px, of all cameras side by side
+  TrackerOptions tracker;
+  const std::atomic<bool>* stop = nullptr;  // set from outside: end after this frame, with complete files
+
+  void Check() const;  // throws InputError naming the option
+};
+
+// A force's mean over the frames in which it was estimated.
+struct RunReport {
+  int frames = 0;         // processed
+  int usable_frames = 0;  // with forces
+  std::vector<std::string> warnings;
+  std::optional<FrameResult> last;  // frame with forces
+  double seconds = 0;
+  std::filesystem::path out;
+
+  // Whether the results can be relied on: the recording was whole and most frames gave forces.
+  bool usable = false;
+
+  std::string BriefReport() const;  // one line
+  std::string FullReport() const;   // with a table of the last frame's forces
+};
+
+// The main job: scene.yaml in, forces out. Reads the recording that the scene names, finds where the rig stands,
+// estimates the forces in every frame, and writes forces.csv, markers.csv, actuation.csv, summary.json and
+// overlay.mp4. Files show up under their names only when they are complete.
+// Throws InputError for input that cannot be used, before anything is written where possible.
+RunReport Run(const std::filesystem::path& scene_file, const RunOptions& options = {});
+
+}  // namespace softforce::pipeline

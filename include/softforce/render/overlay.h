@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "softforce/camera/rig.h"
+#include "softforce/mesh/surface.h"
+
+namespace softforce::render {
+
+enum class MarkerMark { kSeen, kOneCamera, kHidden, kRejected };
+
+struct OverlayMarker {
+  std::string label;
+  MarkerMark mark;
+  Eigen::Vector3d p_robot;  // m; measured if seen, else where the model expects it
+};
+
+struct OverlayForce {
+  std::string label;        // drawn beside the value
+  Eigen::Vector3d p_robot;  // m, where it acts on the deformed body
+  Eigen::Vector3d force;    // N
+  double sd_norm = 0;       // N, standard deviation of its norm
+};
+
+struct OverlayCable {
+  std::vector<Eigen::Vector3d> path;  // m, robot frame, attachment to guide
+};
+
+// What to draw over one frame. All places in the robot frame, metres.
+struct OverlayScene {
+  const mesh::Surface* surface = nullptr;
+  const Eigen::Matrix3Xd* x = nullptr;  // 3×N deformed nodes
+  std::vector<OverlayMarker> markers;
+  std::vector<OverlayForce> forces;
+  std::vector<OverlayCable> cables;
+  std::vector<std::string> caption;  // lines at the top left
+};
+
+struct OverlayOptions {
+  double metres_per_newton = 0.08;  // length of an arrow in space
+};
+
+// The picture (8 bits, grey or colour) in colour with the scene drawn over it: the body's visible
+// surface as a net (faces behind others or turned away are not drawn), markers by status, cables,
+// and force arrows with their value in newtons; everything goes through the camera's lens model.
+// An arrow ends at the place where a push acts and starts there where the force pulls, so that it
+// stays outside the body; parts of it behind the body are fainter. A push or a pull is told by the
+// surface's normal; without a surface every force counts as a push.
+cv::Mat DrawOverlay(const cv::Mat& grey, const camera::Camera& camera,
+                    const Eigen::Isometry3d& T_camera_robot, const OverlayScene& scene,
+                    const OverlayOptions& options = {});
+
+// Pictures side by side, each with its camera's name, scaled down together to at most `max_width`
+// px. Width and height of the result are even, as video codecs want them.
+cv::Mat SideBySide(const std::vector<cv::Mat>& pictures, const std::vector<std::string>& names,
+                   int max_width);
+
+}  // namespace softforce::render

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "softforce/calibration/register.h"
+#include "softforce/camera/rig.h"
+#include "softforce/fem/material.h"
+
+namespace softforce::scene {
+
+// The contents of a scene.yaml, in SI units, with every path made absolute. Places are in the robot frame.
+
+struct MeshFile {
+  std::filesystem::path file;
+  double metres_per_unit = NAN;
+  int order = 2;  // 1 or 2
+};
+
+// Nodes that do not move: those in a box, or those of a named surface group.
+struct FixedRegion {
+  std::string group;                                                      // empty: the box
+  Eigen::Vector3d box_min = Eigen::Vector3d::Constant(NAN), box_max = box_min;  // m
+};
+
+enum class ActuatorType { kCable, kPressure };
+enum class ActuatorInput { kTension, kDisplacement, kPressure };
+
+struct Actuator {
+  std::string name;
+  ActuatorType type = ActuatorType::kCable;
+  ActuatorInput input = ActuatorInput::kDisplacement;
+  std::vector<Eigen::Vector3d> points;  // m, on the body: attachment first, then via points to the guide
+  Eigen::Vector3d guide = Eigen::Vector3d::Constant(NAN);  // m, fixed in space
+  double patch = 0;                     // m, diameter over which the attachment is spread
+  std::string group;                    // pressure: the surface group it acts on
+};
+
+// Inputs of the actuators over time; held before the first row and after the last.
+struct ActuationTable {
+  std::vector<double> time_s;  // ascending
+  Eigen::MatrixXd inputs;      // rows like time_s, a column per actuator in the scene's order; N, m or Pa
+
+  Eigen::VectorXd At(double time) const;  // linear between rows
+};
+
+enum class MarkerType { kDot, kAprilTag };
+
+struct MarkerPoint {
+  int id = -1;
+  Eigen::Vector3d position;  // m, body at rest
+};
+
+struct Markers {
+  MarkerType type = MarkerType::kDot;
+  std::string family;  // of tags
+  double size = NAN;   // m: diameter of a dot, side of a tag's black square
+  std::vector<MarkerPoint> points;
+};
+
+enum class ForceDirection { kFree, kNormal, kFixed };
+
+struct Candidate {
+  int id = -1;
+  Eigen::Vector3d position;  // m, body at rest
+  ForceDirection direction = ForceDirection::kFree;
+  Eigen::Vector3d fixed_direction = Eigen::Vector3d::Zero();  // unit vector; kFixed only
+};
+
+struct Forces {
+  bool known_locations = true;
+  double patch = 0;  // m, diameter over which each force is spread
+  std::vector<Candidate> candidates;
+};
+
+struct Cameras {
+  std::filesystem::path rig;
+  std::map<std::string, std::string> sources;  // camera name → absolute file path, device, URL …
+  std::vector<calibration::Fiducial> fiducials;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string name;
+  MeshFile mesh;
+  std::map<std::string, fem::Material> materials;  // by region name; "" is the whole body
+  std::vector<FixedRegion> fixed;
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // m/s²
+  double density = 0;                                 // kg/m³
+  std::vector<Actuator> actuators;
+  std::optional<std::filesystem::path> actuation_file;
+  ActuationTable actuation;
+  Markers markers;
+  Forces forces;
+  Cameras cameras;
+};
+
+// Reads and checks a scene and its actuation table. Throws InputError naming file, key and line on anything
+// it does not understand: an unknown key, a missing one, a quantity without unit or of the wrong kind, an id
+// given twice, an actuator without a column in the table, …
+Scene LoadScene(const std::filesystem::path& file);
+
+}  // namespace softforce::scene

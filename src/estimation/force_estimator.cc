@@ -1,0 +1,308 @@
+#include "softforce/estimation/force_estimator.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/equilibrium_problem.h"
+#include "softforce/base/input_error.h"
+#include "softforce/geometry/chi_square.h"
+
+namespace softforce::estimation {
+namespace {
+
+constexpr double kOffsetFloor = 1e-9;  // m; far below what any camera sees
+
+bool IsFinite(const Observation& observation) {
+  return observation.position.allFinite() && observation.whitening.allFinite() &&
+         observation.offset.allFinite();
+}
+
+// The whitening matrix for R + model_sd² I, where `whitening` belongs to R. Directions that the measurement says
+// nothing about (one camera) stay without a row.
+Eigen::MatrixXd WithModelError(const Eigen::MatrixXd& whitening, double model_sd) {
+  // In the rows' space: whitening = Σ^(-1/2) Q with Q orthonormal rows after an SVD.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(whitening, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXd sd = svd.singularValues().cwiseInverse();
+  const Eigen::VectorXd total = (sd.array().square() + model_sd * model_sd).sqrt().inverse();
+  return total.asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+void EstimatorOptions::Check() const {
+  const auto require = [](bool holds, const char* option, const char* rule) {
+    if (!holds) throw base::InputError(std::string("estimator: ") + option, rule);
+  };
+  require(common_model_error >= 0, "common_model_error", "must be 0 or more");
+  require(local_model_error >= 0, "local_model_error", "must be 0 or more");
+  require(loss_scale > 0, "loss_scale", "must be greater than 0");
+  require(rejection_probability > 0 && rejection_probability < 1, "rejection_probability",
+          "must lie between 0 and 1");
+  require(max_rejected_share >= 0 && max_rejected_share < 1, "max_rejected_share",
+          "must be at least 0 and below 1");
+  require(min_singular_ratio > 0, "min_singular_ratio", "must be greater than 0");
+  require(max_iterations >= 1, "max_iterations", "must be 1 or more");
+  require(cost_tolerance > 0, "cost_tolerance", "must be greater than 0");
+  require(max_staleness >= 0, "max_staleness", "must be 0 m or more");
+}
+
+const char* Name(ForceEstimate::Status status) {
+  switch (status) {
+    case ForceEstimate::Status::kNotRun: return "not_run";
+    case ForceEstimate::Status::kOk: return "ok";
+    case ForceEstimate::Status::kTooFewObservations: return "too_few_markers";
+    case ForceEstimate::Status::kUnobservable: return "unobservable";
+    case ForceEstimate::Status::kNotConverged: return "not_converged";
+  }
+  return "";
+}
+
+std::string ForceEstimate::BriefReport() const {
+  if (!ok()) return fmt::format("{}: {}", Name(status), reason);
+  return fmt::format("ok: chi2 {:.1f} of {} degrees of freedom, {} iterations, {} factorisations", chi2,
+                     degrees_of_freedom, iterations, factorisations);
+}
+
+ForceEstimator::ForceEstimator(fem::StaticSolver* solver, std::vector<ForceSite> sites,
+                               const EstimatorOptions& options)
+    : solver_(solver), sites_(std::move(sites)), options_(options) {
+  options_.Check();
+  const int num_nodes = solver_->body().mesh.num_nodes();
+  H_f_ = Eigen::MatrixXd::Zero(3 * num_nodes,
+                               FirstComponent(static_cast<int>(sites_.size())));
+  for (int s = 0; s < static_cast<int>(sites_.size()); ++s) {
+    const ForceSite& site = sites_[s];
+    for (size_t i = 0; i < site.at.nodes.size(); ++i) {
+      H_f_.block(3 * site.at.nodes[i], FirstComponent(s), 3, site.directions.cols()) =
+          site.at.weights[i] * site.directions;
+    }
+  }
+  state_ = solver_->AtRest();
+  intensity_ = state_intensity_ = Eigen::VectorXd::Zero(num_components());
+}
+
+int ForceEstimator::FirstComponent(int site) const {
+  int first = 0;
+  for (int s = 0; s < site; ++s) first += static_cast<int>(sites_[s].directions.cols());
+  return first;
+}
+
+fem::LoadCase ForceEstimator::LoadOf(const Eigen::VectorXd& intensity,
+                                     const std::vector<fem::CableCommand>& commands) const {
+  return {(H_f_ * intensity).reshaped(3, H_f_.rows() / 3), commands};
+}
+
+fem::SolveSummary ForceEstimator::Advance(const std::vector<fem::CableCommand>& commands) {
+  return solver_->Solve(LoadOf(intensity_, commands), &state_);
+}
+
+Eigen::Matrix3Xd ForceEstimator::Compliance(const mesh::NodalWeights& at) {
+  const bool fresh =
+      compliance_u_.cols() == state_.u.cols() &&
+      (state_.u - compliance_u_).colwise().norm().maxCoeff() <= options_.max_staleness;
+  if (!fresh) {
+    compliance_ = solver_->Solve(state_, H_f_, options_.max_staleness).du;
+    compliance_u_ = state_.u;
+  }
+  Eigen::Matrix3Xd W = Eigen::Matrix3Xd::Zero(3, num_components());
+  for (size_t i = 0; i < at.nodes.size(); ++i) {
+    W += at.weights[i] * compliance_.middleRows<3>(3 * at.nodes[i]);
+  }
+  return W;
+}
+
+OffsetPrior ForceEstimator::MakeOffsetPrior(const std::vector<WhitenedObservation>& observations,
+                                            double model_sd) const {
+  const Eigen::Matrix3Xd& X = solver_->body().mesh.nodes;
+  OffsetPrior prior;
+  prior.centre.setZero();
+  for (const WhitenedObservation& seen : observations) {
+    prior.centre += seen.observation->at.Apply(X) / static_cast<double>(observations.size());
+  }
+  double extent = 0;  // m, root mean square distance from the centre
+  for (const WhitenedObservation& seen : observations) {
+    extent += (seen.observation->at.Apply(X) - prior.centre).squaredNorm() /
+              static_cast<double>(observations.size());
+  }
+  extent = std::sqrt(extent);
+
+  // The rig's place, carried from the robot's origin to the centre.
+  geometry::Matrix6d to_centre = geometry::Matrix6d::Identity();
+  to_centre.topRightCorner<3, 3>() = -geometry::Skew(prior.centre);
+  geometry::Matrix6d P = to_centre * registration_covariance_ * to_centre.transpose();
+  // The model's common error moves the points about as far by turning as by shifting. The floor keeps P regular.
+  const double shift = std::hypot(model_sd, kOffsetFloor);
+  const double turn = shift / std::max(extent, kOffsetFloor);
+  P.diagonal().head<3>().array() += shift * shift;
+  P.diagonal().tail<3>().array() += turn * turn;
+  const geometry::Matrix6d L = P.llt().matrixL();
+  prior.whitening = L.inverse();
+  return prior;
+}
+
+ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observations,
+                                       const std::vector<fem::CableCommand>& commands) {
+  const fem::Equilibrium before = state_;
+  const Eigen::VectorXd intensity_before = intensity_;
+  ForceEstimate estimate;
+  estimate.rejected.assign(observations.size(), 0);
+
+  double largest_displacement = 0;  // m
+  for (const Observation& seen : observations) {
+    largest_displacement = std::max(largest_displacement, seen.at.Apply(state_.u).norm());
+  }
+  std::vector<WhitenedObservation> used;
+  for (int i = 0; i < static_cast<int>(observations.size()); ++i) {
+    const Observation& seen = observations[i];
+    estimate.rejected[i] = !IsFinite(seen);
+    if (estimate.rejected[i]) continue;
+    used.push_back({i, &seen,
+                    WithModelError(seen.whitening, options_.local_model_error * largest_displacement)});
+  }
+
+  FitAndReject(used, options_.common_model_error * largest_displacement, commands, &estimate);
+  if (!estimate.ok()) {
+    state_ = before;
+    intensity_ = state_intensity_ = intensity_before;
+  }
+  return estimate;
+}
+
+void ForceEstimator::FitAndReject(std::vector<WhitenedObservation> used, double common_sd,
+                                  const std::vector<fem::CableCommand>& commands,
+                                  ForceEstimate* estimate) {
+  const BodyResponse body = Response(commands, estimate);
+  const int n = num_components();
+  const int most_rejected = static_cast<int>(options_.max_rejected_share *
+                                             static_cast<double>(estimate->rejected.size()));
+  Eigen::VectorXd parameters = Eigen::VectorXd::Zero(n + 6);
+  for (int rejections = 0;; ++rejections) {
+    int rows = 0;
+    for (const WhitenedObservation& seen : used) rows += static_cast<int>(seen.whitening.rows());
+    if (rows < n) {  // Theorem 2
+      estimate->status = ForceEstimate::Status::kTooFewObservations;
+      estimate->reason =
+          fmt::format("{} measured coordinates for {} unknown force components", rows, n);
+      return;
+    }
+    const OffsetPrior prior = MakeOffsetPrior(used, common_sd);
+    parameters.head(n) = intensity_;
+    const FitResult fit = FitParameters(used, parameters, prior, body, options_);
+    estimate->iterations += fit.iterations;
+    const Eigen::VectorXd found = fit.parameters.head(n);
+    if (!fit.converged || (found != state_intensity_ && !body.move(found))) {
+      estimate->status = ForceEstimate::Status::kNotConverged;
+      estimate->reason = fit.message;
+      return;
+    }
+    parameters = fit.parameters;
+    intensity_ = parameters.head(n);
+
+    Eigen::MatrixXd J(rows + 6, n + 6);
+    const int worst = Assess(used, prior, body, parameters, &J, estimate);
+    estimate->degrees_of_freedom = rows - n;
+    if (worst < 0 || rejections >= most_rejected) {
+      Conclude(J, parameters, estimate);
+      return;
+    }
+    estimate->rejected[used[worst].index] = 1;
+    used.erase(used.begin() + worst);
+  }
+}
+
+int ForceEstimator::Assess(const std::vector<WhitenedObservation>& used, const OffsetPrior& prior,
+                           const BodyResponse& body, const Eigen::VectorXd& parameters,
+                           Eigen::MatrixXd* J, ForceEstimate* estimate) const {
+  int worst = -1;
+  double worst_excess = 1;
+  estimate->chi2 = 0;
+  int row = 0;
+  for (int i = 0; i < static_cast<int>(used.size()); ++i) {
+    const Observation& seen = *used[i].observation;
+    const int k = static_cast<int>(used[i].whitening.rows());
+    const double chi2 =
+        (used[i].whitening * Misfit(body, prior, seen, parameters)).squaredNorm();
+    J->middleRows(row, k) = used[i].whitening * ParameterJacobian(body, prior, seen);
+    row += k;
+    estimate->chi2 += chi2;
+    const double excess =
+        chi2 / geometry::ChiSquareQuantile(1 - options_.rejection_probability, k);
+    if (excess > worst_excess) {
+      worst_excess = excess;
+      worst = i;
+    }
+  }
+  J->bottomRows<6>().setZero();
+  J->bottomRightCorner<6, 6>() = prior.whitening;
+  return worst;
+}
+
+void ForceEstimator::Conclude(const Eigen::MatrixXd& J, const Eigen::VectorXd& parameters,
+                              ForceEstimate* estimate) const {
+  const int n = num_components();
+  // What the observations say of the forces by themselves, the offset being known.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.topLeftCorner(J.rows() - 6, n));
+  const Eigen::VectorXd& sigma = svd.singularValues();
+  if (!(sigma(n - 1) > options_.min_singular_ratio * sigma(0))) {
+    estimate->status = ForceEstimate::Status::kUnobservable;
+    estimate->reason = "the markers in view cannot tell the forces apart";
+    return;
+  }
+  // Newtons and metres differ by orders of magnitude: scale the columns before inverting.
+  const Eigen::VectorXd scale = J.colwise().norm().cwiseInverse();
+  const Eigen::MatrixXd scaled = J * scale.asDiagonal();
+  const Eigen::MatrixXd covariance =
+      scale.asDiagonal() * (scaled.transpose() * scaled).inverse() * scale.asDiagonal();
+  estimate->covariance = covariance.topLeftCorner(n, n);
+  estimate->intensity = parameters.head(n);
+  estimate->offset = {parameters.segment<3>(n), parameters.tail<3>()};
+  estimate->status = ForceEstimate::Status::kOk;
+}
+
+BodyResponse ForceEstimator::Response(const std::vector<fem::CableCommand>& commands,
+                                      ForceEstimate* estimate) {
+  BodyResponse body;
+  body.move = [this, commands, estimate](const Eigen::VectorXd& intensity) {
+    if (!intensity.allFinite()) return false;
+    fem::Equilibrium trial = state_;
+    // A small change starts from the linear answer; Newton's method does the rest. Over a large one the linear answer
+    // stretches what should turn, and the old shape is the better start.
+    if (compliance_u_.cols() == state_.u.cols()) {
+      const Eigen::Matrix3Xd du =
+          (compliance_ * (intensity - state_intensity_)).reshaped(3, trial.u.cols());
+      if (du.colwise().norm().maxCoeff() <= options_.max_staleness) trial.u += du;
+    }
+    const fem::SolveSummary summary = solver_->Solve(LoadOf(intensity, commands), &trial);
+    estimate->factorisations += summary.factorisations;
+    if (summary.ok()) {
+      state_ = std::move(trial);
+      state_intensity_ = intensity;
+    }
+    return summary.ok();
+  };
+  body.position = [this](const mesh::NodalWeights& at) -> Eigen::Vector3d {
+    return at.Apply(solver_->body().mesh.nodes) + at.Apply(state_.u);
+  };
+  body.compliance = [this](const mesh::NodalWeights& at) { return Compliance(at); };
+  return body;
+}
+
+Eigen::Vector3d ForceEstimator::Force(const Eigen::VectorXd& intensity, int site) const {
+  const Eigen::Matrix3Xd& directions = sites_[site].directions;
+  return directions * intensity.segment(FirstComponent(site), directions.cols());
+}
+
+Eigen::Matrix3d ForceEstimator::ForceCovariance(const Eigen::MatrixXd& covariance,
+                                                int site) const {
+  const Eigen::Matrix3Xd& directions = sites_[site].directions;
+  const int first = FirstComponent(site);
+  const int n = static_cast<int>(directions.cols());
+  return directions * covariance.block(first, first, n, n) * directions.transpose();
+}
+
+}  // namespace softforce::estimation

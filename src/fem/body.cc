@@ -1,0 +1,62 @@
+#include "softforce/fem/body.h"
+
+#include <Eigen/SVD>
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "softforce/base/input_error.h"
+
+namespace softforce::fem {
+namespace {
+
+// Which part each node belongs to: parts are sets of nodes connected through cells.
+std::vector<int> Parts(const mesh::TetMesh& mesh) {
+  std::vector<int> parent(mesh.num_nodes());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int node) {
+    while (parent[node] != node) node = parent[node] = parent[parent[node]];
+    return node;
+  };
+  for (int e = 0; e < mesh.num_elements(); ++e) {
+    for (int i = 1; i < mesh.elements.rows(); ++i) {
+      parent[root(mesh.elements(i, e))] = root(mesh.elements(0, e));
+    }
+  }
+  for (int node = 0; node < mesh.num_nodes(); ++node) parent[node] = root(node);
+  return parent;
+}
+
+// Whether points span at least a plane, so that a body held there cannot move.
+bool SpanAPlane(const Eigen::Matrix3Xd& points) {
+  if (points.cols() < 3) return false;
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Vector3d extent =
+      Eigen::JacobiSVD<Eigen::Matrix3d>(centred * centred.transpose()).singularValues().cwiseSqrt();
+  return extent(1) > 1e-6 * extent(0);
+}
+
+}  // namespace
+
+void Body::Check(const std::string& where) const {
+  for (const Material& material : materials) material.Check(where + ": material");
+
+  const std::vector<int> part = Parts(mesh);
+  for (int node = 0; node < mesh.num_nodes(); ++node) {
+    if (part[node] != node) continue;  // a part is named by one of its nodes
+    std::vector<int> held;
+    for (const int fixed : fixed_nodes) {
+      if (part[fixed] == node) held.push_back(fixed);
+    }
+    if (SpanAPlane(mesh.nodes(Eigen::all, held))) continue;
+    const Eigen::Vector3d at_mm = 1000 * mesh.nodes.col(node);
+    throw base::InputError(
+        where + ": fixed",
+        fmt::format("the part of the body around ({:.1f} {:.1f} {:.1f}) mm is held at {} nodes, which do not "
+                    "keep it from drifting or turning; at least 3 nodes that are not in line are needed",
+                    at_mm.x(), at_mm.y(), at_mm.z(), held.size()),
+        "Check the boxes and groups under 'fixed' against the mesh: its unit, and where it stands.");
+  }
+}
+
+}  // namespace softforce::fem

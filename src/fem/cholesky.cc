@@ -1,0 +1,106 @@
+#include "fem/cholesky.h"
+
+#include <cblas.h>
+#include <cholmod.h>
+#include <omp.h>
+
+#include <cassert>
+#include <cstring>
+
+namespace softforce::fem {
+namespace {
+
+// While it lives, OpenMP regions entered by this thread run on this thread alone (a level limit of 0 outranks
+// the num_threads clauses inside CHOLMOD), and OpenBLAS starts no helpers.
+class OneThread {
+ public:
+  OneThread() : levels_(omp_get_max_active_levels()) {
+    omp_set_max_active_levels(0);
+    openblas_set_num_threads(1);
+  }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_;
+};
+
+}  // namespace
+
+struct Cholesky::State {
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+
+  State() {
+    cholmod_start(&common);
+    common.print = 0;  // "not positive definite" is an answer here, not a message
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.final_ll = 1;
+    common.nmethods = 2;
+    common.method[0].ordering = CHOLMOD_AMD;
+    common.method[1].ordering = CHOLMOD_METIS;
+  }
+  ~State() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+};
+
+namespace {
+
+// CHOLMOD's view of the matrix; nothing is copied, and CHOLMOD does not write to it.
+cholmod_sparse View(const LowerBlocks& matrix) {
+  cholmod_sparse view;
+  std::memset(&view, 0, sizeof(view));
+  view.nrow = view.ncol = matrix.size();
+  view.nzmax = matrix.row.size();
+  view.p = const_cast<int*>(matrix.column_start.data());
+  view.i = const_cast<int*>(matrix.row.data());
+  view.x = const_cast<double*>(matrix.value.data());
+  view.stype = -1;
+  view.itype = CHOLMOD_INT;
+  view.xtype = CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  view.sorted = 1;
+  view.packed = 1;
+  return view;
+}
+
+}  // namespace
+
+Cholesky::Cholesky(const LowerBlocks& pattern) : state_(std::make_unique<State>()) {
+  const OneThread guard;
+  cholmod_sparse view = View(pattern);
+  state_->factor = cholmod_analyze(&view, &state_->common);
+  assert(state_->factor != nullptr);
+}
+
+Cholesky::~Cholesky() = default;
+
+bool Cholesky::Factorise(const LowerBlocks& matrix) {
+  const OneThread guard;
+  cholmod_sparse view = View(matrix);
+  cholmod_factorize(&view, state_->factor, &state_->common);
+  return state_->common.status == CHOLMOD_OK;
+}
+
+void Cholesky::SolveInPlace(Eigen::MatrixXd* b) const {
+  const OneThread guard;
+  cholmod_dense rhs;
+  std::memset(&rhs, 0, sizeof(rhs));
+  rhs.nrow = rhs.d = b->rows();
+  rhs.ncol = b->cols();
+  rhs.nzmax = b->size();
+  rhs.x = b->data();
+  rhs.xtype = CHOLMOD_REAL;
+  rhs.dtype = CHOLMOD_DOUBLE;
+  cholmod_dense* x = cholmod_solve(CHOLMOD_A, state_->factor, &rhs, &state_->common);
+  assert(x != nullptr);
+  std::memcpy(b->data(), x->x, sizeof(double) * b->size());
+  cholmod_free_dense(&x, &state_->common);
+}
+
+}  // namespace softforce::fem

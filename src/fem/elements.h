@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "softforce/fem/body.h"
+
+namespace softforce::fem {
+
+// Gradients of the shape functions at the integration points of every cell, in the body at rest: one point
+// for 4-node cells, the four-point rule of degree 2 for 10-node cells.
+class Elements {
+ public:
+  explicit Elements(const Body& body);
+
+  int num_elements() const { return static_cast<int>(nodes_.cols()); }
+  int nodes_per_element() const { return static_cast<int>(nodes_.rows()); }
+  int node(int element, int local) const { return nodes_(local, element); }
+
+  // Sum of the elastic energies (J) and, added to `forces` (3×N, N), the internal forces. Returns infinity,
+  // with `forces` unfinished, if the law has no value at some point: the cell is turned inside out.
+  double EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const;
+
+  // The stiffness of one cell, symmetric, 3n×3n with index 3·local + component, N/m.
+  template <int kNodes>
+  void Stiffness(int element, const Eigen::Matrix3Xd& u,
+                 Eigen::Matrix<double, 3 * kNodes, 3 * kNodes>* K) const;
+
+  // Σ over cells, J.
+  double ShearModulusTimesVolume() const;
+
+  // Σ over cells of density · volume · shape function: mass per node, kg per unit density.
+  Eigen::VectorXd NodalVolumes(int num_nodes) const;
+
+ private:
+  template <int kNodes>
+  double EnergyAndForcesOf(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const;
+
+  int num_points() const { return nodes_.rows() == 10 ? 4 : 1; }
+  const double* gradients(int element, int point) const {
+    return gradients_.data() + (element * num_points() + point) * 3 * nodes_.rows();
+  }
+
+  Eigen::MatrixXi nodes_;
+  std::vector<double> gradients_;  // [element][point][local][xyz], 1/m
+  std::vector<double> weights_;    // [element][point], m³
+  std::vector<Material> material_of_;  // per element
+};
+
+}  // namespace softforce::fem

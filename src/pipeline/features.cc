@@ -1,0 +1,112 @@
+#include "softforce/pipeline/features.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <array>
+
+#include "softforce/geometry/chi_square.h"
+
+namespace softforce::pipeline {
+namespace {
+
+const vision::Tag* FindTag(const CameraDetections& camera, const scene::Markers& markers, int id) {
+  for (const vision::Tag& tag : camera.tags) {
+    if (tag.id == id && tag.family == markers.family) return &tag;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+MarkerFeatures::MarkerFeatures(const scene::Scene& scene, const World& world)
+    : scene_(scene), world_(world), placed_(scene.markers.points.size(), 0) {
+  if (scene.markers.type != scene::MarkerType::kDot) return;
+  for (int m = 0; m < static_cast<int>(world.markers.size()); ++m) {
+    features_.push_back({m, -1, world.markers[m], scene.markers.size});
+    placed_[m] = 1;
+  }
+}
+
+void MarkerFeatures::PlaceTags(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
+                               const std::vector<CameraDetections>& cameras,
+                               const Eigen::Matrix3Xd& u) {
+  for (int m = 0; m < static_cast<int>(placed_.size()); ++m) {
+    if (placed_[m]) continue;
+    std::array<std::vector<camera::PixelObservation>, 4> pixels;
+    for (int c = 0; c < static_cast<int>(cameras.size()); ++c) {
+      const vision::Tag* tag =
+          FindTag(cameras[c], scene_.markers, scene_.markers.points[m].id);
+      if (tag == nullptr) continue;
+      for (int i = 0; i < 4; ++i) {
+        pixels[i].push_back({c, tag->corners[i], tag->corner_covariances[i]});
+      }
+    }
+    std::array<Eigen::Vector3d, 4> corner;
+    bool found = true;
+    for (int i = 0; i < 4 && found; ++i) {
+      const camera::Triangulation at = camera::Triangulate(rig, pixels[i]);
+      found = at.ok() || at.status == camera::Triangulation::Status::kInconsistent;
+      if (found) corner[i] = T_rig_robot.inverse() * at.p_rig;
+    }
+    if (found) PlaceTag(m, corner[0] + corner[1] - corner[2] - corner[3], u);
+  }
+}
+
+void MarkerFeatures::PlaceTag(int marker, const Eigen::Vector3d& up_robot,
+                              const Eigen::Matrix3Xd& u) {
+  const Eigen::Matrix3Xd& X = world_.mesh().nodes;
+  const BodyPoint& centre = world_.markers[marker];
+  const Eigen::Vector3d normal = mesh::Normal(world_.surface, X, centre.at);
+  const Eigen::Vector3d normal_now = mesh::Normal(world_.surface, X + u, centre.at);
+  // Back to the body at rest by the smallest rotation that undoes the tilt of the surface.
+  const Eigen::Vector3d turned =
+      Eigen::Quaterniond::FromTwoVectors(normal_now, normal) * up_robot;
+  const Eigen::Vector3d up = (turned - turned.dot(normal) * normal).normalized();
+  const Eigen::Vector3d right = up.cross(normal);
+  const double half = scene_.markers.size / 2;
+  const std::array<Eigen::Vector2d, 4> square{{{-1, 1}, {1, 1}, {1, -1}, {-1, -1}}};
+  const Eigen::Vector3d middle = scene_.markers.points[marker].position;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d place =
+        middle + half * (square[i].x() * right + square[i].y() * up);
+    const mesh::SurfaceProjection on = mesh::ClosestSurfacePoint(world_.surface, X, place);
+    features_.push_back({marker, i,
+                         {on.at, mesh::ShapeFunctions(world_.surface, on.at), place - on.position},
+                         0});
+  }
+  placed_[marker] = 1;
+}
+
+FeatureSightings AllocateTagCorners(const scene::Markers& markers, const camera::Rig& rig,
+                                    const Eigen::Isometry3d& T_rig_robot,
+                                    const std::vector<Feature>& features,
+                                    const std::vector<PredictedFeature>& predicted,
+                                    const std::vector<CameraDetections>& cameras,
+                                    const ObserveOptions& options) {
+  const double gate = geometry::ChiSquareQuantile(options.allocation.gate_probability, 2);
+  const double floor2 = options.pixel_floor * options.pixel_floor;
+  FeatureSightings sightings;
+  sightings.pixels.resize(features.size());
+  for (size_t f = 0; f < features.size(); ++f) {
+    for (int c = 0; c < static_cast<int>(cameras.size()); ++c) {
+      const vision::Tag* tag = FindTag(cameras[c], markers, markers.points[features[f].marker].id);
+      if (tag == nullptr) continue;
+      const camera::Camera& camera = rig.cameras[c];
+      const Eigen::Isometry3d T_camera_robot = camera.T_camera_rig * T_rig_robot;
+      const camera::Projection at =
+          camera::Project(camera.lens, T_camera_robot * predicted[f].position);
+      if (!at.visible) continue;
+      const int i = features[f].corner;
+      const Eigen::Matrix2d noise =
+          tag->corner_covariances[i] + floor2 * Eigen::Matrix2d::Identity();
+      const Eigen::Matrix<double, 2, 3> J = at.jacobian * T_camera_robot.linear();
+      const Eigen::Matrix2d S = J * predicted[f].covariance * J.transpose() + noise;
+      const Eigen::Vector2d nu = tag->corners[i] - at.pixel;
+      if (!(nu.dot(S.inverse() * nu) <= gate)) continue;
+      sightings.pixels[f].push_back({c, tag->corners[i], noise});
+    }
+  }
+  return sightings;
+}
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+
+#include "softforce/pipeline/frame_result.h"
+#include "softforce/pipeline/world.h"
+#include "softforce/vision/recording.h"
+#include "softforce/vision/video_writer.h"
+
+namespace softforce::pipeline {
+
+// overlay.mp4: every camera's picture with body, markers and forces drawn over it, side by side.
+class OverlayVideo {
+ public:
+  // World, rig and scene must outlive it.
+  OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene, const World& world,
+               const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot, int width);
+
+  void Add(const vision::FrameSet& frame, const FrameResult& result, const Eigen::Matrix3Xd& u);
+  void Commit() { writer_.Commit(); }
+
+ private:
+  const scene::Scene& scene_;
+  const World& world_;
+  const camera::Rig& rig_;
+  Eigen::Isometry3d T_rig_robot_;
+  int width_;
+  vision::VideoWriter writer_;
+};
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,93 @@
+#include "pipeline/registration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "softforce/base/input_error.h"
+
+namespace softforce::pipeline {
+namespace {
+
+constexpr double kMaxRegistrationRms = 3;  // px
+
+}  // namespace
+
+Detector::Detector(const scene::Scene& scene) : scene_(scene) {
+  std::vector<std::string> families;
+  if (scene.markers.type == scene::MarkerType::kAprilTag) families.push_back(scene.markers.family);
+  for (const calibration::Fiducial& fiducial : scene.cameras.fiducials) {
+    families.push_back(fiducial.family);
+  }
+  for (const std::string& family : families) {
+    if (detectors_.count(family) == 0) detectors_.emplace(family, vision::TagDetector(family));
+  }
+}
+
+std::vector<vision::Tag> Detector::Tags(const cv::Mat& picture, const std::string& family) const {
+  return detectors_.at(family).Detect(picture);
+}
+
+std::vector<CameraDetections> Detector::Markers(const vision::FrameSet& frame) const {
+  std::vector<CameraDetections> cameras(frame.pictures.size());
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    if (scene_.markers.type == scene::MarkerType::kDot) {
+      cameras[c].dots = vision::DetectDots(frame.pictures[c]);
+    } else {
+      cameras[c].tags = Tags(frame.pictures[c], scene_.markers.family);
+    }
+  }
+  return cameras;
+}
+
+std::vector<std::vector<vision::Tag>> Detector::Fiducials(const vision::FrameSet& frame) const {
+  std::vector<std::vector<vision::Tag>> cameras(frame.pictures.size());
+  std::vector<std::string> searched;
+  for (const calibration::Fiducial& fiducial : scene_.cameras.fiducials) {
+    if (std::find(searched.begin(), searched.end(), fiducial.family) != searched.end()) continue;
+    searched.push_back(fiducial.family);
+    for (size_t c = 0; c < cameras.size(); ++c) {
+      const std::vector<vision::Tag> tags = Tags(frame.pictures[c], fiducial.family);
+      cameras[c].insert(cameras[c].end(), tags.begin(), tags.end());
+    }
+  }
+  return cameras;
+}
+
+Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector, int frames,
+                 vision::Recording* recording) {
+  if (scene.cameras.fiducials.empty()) {
+    if (rig.T_rig_robot) return {*rig.T_rig_robot, geometry::Matrix6d::Zero(), std::nullopt};
+    throw base::InputError(
+        scene.file.string() + ": cameras",
+        "nothing says where the cameras stand: there are no fiducials here and no T_rig_robot in " +
+            scene.cameras.rig.string(),
+        "Fix AprilTags to the robot's base and list their corners under 'fiducials'.");
+  }
+  calibration::FiducialRegistration registration(rig, scene.cameras.fiducials);
+  for (int i = 0; i < frames; ++i) {
+    const std::optional<vision::FrameSet> frame = recording->Next();
+    if (!frame) break;
+    registration.Add(detector.Fiducials(*frame));
+  }
+  recording->Rewind();
+  const vision::RigPose pose = registration.Solve();
+  if (!pose.ok()) {
+    throw base::InputError(
+        scene.file.string() + ": cameras: fiducials",
+        fmt::format("the rig's place cannot be found from them: {} corners were seen in the first {} frames",
+                    pose.num_points, frames),
+        "At least one fiducial must be sharp and wholly in view of a camera; check family, id and corners.");
+  }
+  if (pose.rms_px > kMaxRegistrationRms) {
+    throw base::InputError(
+        scene.file.string() + ": cameras: fiducials",
+        fmt::format("their corners are seen {:.1f} px off where rig and fiducials put them; at most {} px can be "
+                    "explained by noise",
+                    pose.rms_px, kMaxRegistrationRms),
+        "Check the corners' places and order (TL TR BR BL), and that rig.yaml belongs to these cameras.");
+  }
+  return {pose.T_rig_robot, pose.covariance, pose};
+}
+
+}  // namespace softforce::pipeline

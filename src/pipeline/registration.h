@@ -1,0 +1,34 @@
+#pragma once
+
+#include "softforce/pipeline/run.h"
+#include "softforce/vision/recording.h"
+#include "softforce/vision/rig_pose.h"
+
+namespace softforce::pipeline {
+
+// Detects what a scene's markers and fiducials need in the pictures of one frame.
+class Detector {
+ public:
+  explicit Detector(const scene::Scene& scene);
+
+  std::vector<CameraDetections> Markers(const vision::FrameSet& frame) const;
+  std::vector<std::vector<vision::Tag>> Fiducials(const vision::FrameSet& frame) const;
+
+ private:
+  std::vector<vision::Tag> Tags(const cv::Mat& picture, const std::string& family) const;
+
+  const scene::Scene& scene_;
+  std::map<std::string, vision::TagDetector> detectors_;  // by family
+};
+
+// Where the rig stands: from the base fiducials in the first frames of the recording, which is rewound after; or,
+// for a scene without fiducials, as the rig's file says. Throws InputError if neither works.
+struct Standing {
+  Eigen::Isometry3d T_rig_robot;
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // see vision::RigPose
+  std::optional<vision::RigPose> from_fiducials;
+};
+Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector, int frames,
+                 vision::Recording* recording);
+
+}  // namespace softforce::pipeline

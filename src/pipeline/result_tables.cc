@@ -1,0 +1,89 @@
+#include "pipeline/result_tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cmath>
+
+#include "softforce/base/input_error.h"
+
+namespace softforce::pipeline {
+namespace {
+
+// A number with a fixed count of decimals; an empty cell where there is none.
+std::string Cell(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "";
+}
+
+std::string Millimetres(const Eigen::Vector3d& p) {
+  return Cell(1e3 * p.x(), 4) + "," + Cell(1e3 * p.y(), 4) + "," + Cell(1e3 * p.z(), 4);
+}
+
+std::string Newtons(const Eigen::Vector3d& f) {
+  return Cell(f.x(), 6) + "," + Cell(f.y(), 6) + "," + Cell(f.z(), 6);
+}
+
+}  // namespace
+
+PendingTable::PendingTable(const std::filesystem::path& path, const std::string& header)
+    : file_(path), stream_(file_.temporary()) {
+  if (!stream_) {
+    throw base::InputError(path.string(), "cannot be written",
+                           "Choose another folder with --out, or check its permissions and the disk's space.");
+  }
+  if (!header.empty()) stream_ << header << '\n';
+}
+
+void PendingTable::Commit() {
+  stream_.close();
+  if (!stream_) {
+    throw base::InputError(file_.path().string(), "could not be written to the end",
+                           "Check the disk's space.");
+  }
+  file_.Commit();
+}
+
+ResultTables::ResultTables(const std::filesystem::path& folder, bool with_actuation)
+    : forces_(folder / "forces.csv",
+              "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_N,fy_N,"
+              "fz_N,norm_N,sd_x_N,sd_y_N,sd_z_N,sd_location_mm"),
+      markers_(folder / "markers.csv",
+               "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,"
+               "residual_mm") {
+  if (with_actuation) {
+    actuation_.emplace(folder / "actuation.csv", "frame,time_s,actuator,tension_N,displacement_mm");
+  }
+}
+
+void ResultTables::Add(const FrameResult& result) {
+  const std::string moment = fmt::format("{},{:.6f}", result.frame, result.time_s);
+  if (result.forces.empty()) {
+    fmt::print(forces_.stream(), "{},,,{},,,,,,,,,,,,,,\n", moment, estimation::Name(result.status));
+  }
+  for (size_t i = 0; i < result.forces.size(); ++i) {
+    const ForceResult& force = result.forces[i];
+    // Places are given in the scene, hence known without error.
+    fmt::print(forces_.stream(), "{},{},{},{},{},{},{},{},{},{}\n", moment, i, force.candidate,
+               estimation::Name(result.status), Millimetres(force.position),
+               Millimetres(force.rest), Newtons(force.force), Cell(force.force.norm(), 6),
+               Newtons(force.covariance.diagonal().cwiseSqrt()), Cell(0, 4));
+  }
+  for (const MarkerResult& marker : result.markers) {
+    fmt::print(markers_.stream(), "{},{},{},{},{},{},{}\n", moment, marker.id, Name(marker.status),
+               Millimetres(marker.measured), Cell(1e3 * marker.sd, 4), Millimetres(marker.model),
+               Cell(1e3 * (marker.measured - marker.model).norm(), 4));
+  }
+  if (!actuation_) return;
+  for (const CableResult& cable : result.cables) {
+    fmt::print(actuation_->stream(), "{},{},{},{}\n", moment, cable.name, Cell(cable.tension, 6),
+               Cell(1e3 * cable.displacement, 5));
+  }
+}
+
+void ResultTables::Commit() {
+  forces_.Commit();
+  markers_.Commit();
+  if (actuation_) actuation_->Commit();
+}
+
+}  // namespace softforce::pipeline

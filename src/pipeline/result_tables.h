@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "softforce/base/pending_file.h"
+#include "softforce/pipeline/frame_result.h"
+
+namespace softforce::pipeline {
+
+// A text file that shows up under its name only once it is complete.
+class PendingTable {
+ public:
+  // Throws InputError if the file cannot be written.
+  PendingTable(const std::filesystem::path& path, const std::string& header);
+
+  std::ostream& stream() { return stream_; }
+
+  // Throws InputError if anything could not be written (disk full).
+  void Commit();
+
+ private:
+  base::PendingFile file_;
+  std::ofstream stream_;
+};
+
+// forces.csv, markers.csv and, for a scene with actuators, actuation.csv.
+class ResultTables {
+ public:
+  ResultTables(const std::filesystem::path& folder, bool with_actuation);
+
+  void Add(const FrameResult& result);
+  void Commit();
+
+ private:
+  PendingTable forces_;
+  PendingTable markers_;
+  std::optional<PendingTable> actuation_;
+};
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,238 @@
+#include "softforce/pipeline/run.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "pipeline/overlay_video.h"
+#include "pipeline/registration.h"
+#include "pipeline/result_tables.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/summary_file.h"
+#include "pipeline/vtu_series.h"
+#include "softforce/base/input_error.h"
+#include "softforce/base/progress.h"
+#include "softforce/scene/rig_file.h"
+
+namespace softforce::pipeline {
+namespace {
+
+std::vector<vision::Recording::Source> Sources(const scene::Scene& scene, const RunOptions& options) {
+  std::map<std::string, std::string> sources = scene.cameras.sources;
+  for (const auto& [camera, source] : options.sources) sources[camera] = source;
+  std::vector<vision::Recording::Source> files;
+  for (const auto& [camera, source] : sources) files.push_back({camera, source});
+  return files;
+}
+
+void RefuseUnknownLocations(const scene::Scene& scene) {
+  if (scene.forces.known_locations) return;
+  throw base::InputError(scene.file.string() + ": forces: known",
+                         "is false, but this version estimates forces at known places only",
+                         "Set 'known: true' and list the places where the forces act as candidates.");
+}
+
+// I_w = ‖W_ef⁺‖₁ of the paper (VI.A) for the body at rest: how much an error of the markers can be amplified.
+double IndexW(const World& world) {
+  estimation::ForceEstimator estimator(world.solver.get(), world.sites);
+  Eigen::MatrixXd W(3 * world.markers.size(), estimator.num_components());
+  for (size_t m = 0; m < world.markers.size(); ++m) {
+    W.middleRows<3>(3 * static_cast<Eigen::Index>(m)) = estimator.Compliance(world.markers[m].weights);
+  }
+  if (W.rows() < W.cols()) return NAN;
+  const Eigen::MatrixXd inverse = W.completeOrthogonalDecomposition().pseudoInverse();
+  return inverse.cwiseAbs().colwise().sum().maxCoeff();
+}
+
+// Removes what an earlier run left under the same names, so that a run that ends early cannot be mistaken for a
+// complete one.
+void ClearOldResults(const std::filesystem::path& out) {
+  for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json", "overlay.mp4",
+                           "results.pvd"}) {
+    std::filesystem::remove(out / name);
+  }
+  std::filesystem::remove_all(out / "vtu");
+}
+
+void MakeFolder(const std::filesystem::path& out) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) {
+    throw base::InputError(out.string(), "the folder cannot be made: " + error.message(),
+                           "Choose another with --out.");
+  }
+}
+
+// A run in progress: what is known before the first frame, and what the frames add up to.
+class Job {
+ public:
+  Job(const std::filesystem::path& scene_file, const RunOptions& options)
+      : options_(options),
+        scene_(scene::LoadScene(scene_file)),
+        rig_(scene::LoadRig(scene_.cameras.rig)),
+        sources_((RefuseUnknownLocations(scene_), Sources(scene_, options))),
+        recording_(rig_, sources_),
+        world_(BuildWorld(scene_)),
+        detector_(scene_),
+        standing_(FindRig(scene_, rig_, detector_, options.registration_frames, &recording_)),
+        index_w_(IndexW(world_)),
+        tracker_(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
+                 options.tracker) {}
+
+  RunReport Finish();
+
+ private:
+  void ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series);
+  FrameResult ProcessFrame(const vision::FrameSet& frame);
+  void Judge();
+  void WriteSummaryFile();
+
+  const RunOptions& options_;
+  const scene::Scene scene_;
+  const camera::Rig rig_;
+  const std::vector<vision::Recording::Source> sources_;
+  vision::Recording recording_;
+  const World world_;
+  const Detector detector_;
+  const Standing standing_;
+  const double index_w_;
+  Tracker tracker_;
+
+  StageClock clock_;
+  RunReport report_;
+  std::map<std::string, int> frame_statuses_, marker_statuses_;
+};
+
+FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
+  const auto detections = clock_.Measure("detect", [&] { return detector_.Markers(frame); });
+  FrameResult result = clock_.Measure(
+      "estimate", [&] { return tracker_.Process(frame.frame, frame.time_s, detections); });
+  ++report_.frames;
+  ++frame_statuses_[estimation::Name(result.status)];
+  for (const MarkerResult& marker : result.markers) ++marker_statuses_[Name(marker.status)];
+  if (!result.forces.empty()) {
+    ++report_.usable_frames;
+    report_.last = result;
+  } else if (report_.warnings.size() < 20) {
+    report_.warnings.push_back(fmt::format("frame {}: {}: {}", result.frame,
+                                           estimation::Name(result.status), result.reason));
+  }
+  return result;
+}
+
+void Job::ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series) {
+  const int last = std::min(options_.end_frame, recording_.announced_frames());
+  base::Progress progress("frames", last - options_.first_frame);
+  while (options_.stop == nullptr || !*options_.stop) {
+    const auto frame = clock_.Measure("decode", [&] { return recording_.Next(); });
+    if (!frame || frame->frame >= options_.end_frame) break;
+    if (frame->frame < options_.first_frame) continue;
+    const FrameResult result = ProcessFrame(*frame);
+    clock_.Measure("write", [&] { tables->Add(result); });
+    if (overlay != nullptr) {
+      clock_.Measure("overlay", [&] { overlay->Add(*frame, result, tracker_.state().u); });
+    }
+    if (series != nullptr) {
+      clock_.Measure("vtu", [&] {
+        series->Add(frame->frame, frame->time_s, world_.mesh(), tracker_.state().u);
+      });
+    }
+    if (options_.show_progress) progress.Update(report_.frames);
+  }
+  if (options_.show_progress) progress.Finish();
+}
+
+void Job::Judge() {
+  const bool stopped = options_.stop != nullptr && *options_.stop;
+  if (!recording_.truncation().empty()) report_.warnings.push_back(recording_.truncation());
+  if (stopped) report_.warnings.push_back("stopped before the end of the recording");
+  if (report_.frames == 0) report_.warnings.push_back("no frame was in the range asked for");
+  const bool mostly = 2 * report_.usable_frames > report_.frames;
+  if (!mostly && report_.frames > 0) {
+    report_.warnings.push_back(fmt::format("forces were found in only {} of {} frames",
+                                           report_.usable_frames, report_.frames));
+  }
+  report_.usable = mostly && !stopped && recording_.truncation().empty();
+}
+
+void Job::WriteSummaryFile() {
+  RunFacts facts{scene_, options_, report_, world_, standing_.from_fiducials, frame_statuses_,
+                 marker_statuses_, index_w_, clock_.Report(), {}};
+  facts.inputs = {scene_.file, scene_.mesh.file, scene_.cameras.rig};
+  if (scene_.actuation_file) facts.inputs.push_back(*scene_.actuation_file);
+  for (const vision::Recording::Source& source : sources_) facts.inputs.push_back(source.file);
+  WriteSummary(facts, options_.out / "summary.json");
+}
+
+RunReport Job::Finish() {
+  const auto start = std::chrono::steady_clock::now();
+  MakeFolder(options_.out);
+  ClearOldResults(options_.out);
+  ResultTables tables(options_.out, !scene_.actuators.empty());
+  std::optional<OverlayVideo> overlay;
+  if (options_.overlay) {
+    overlay.emplace(options_.out / "overlay.mp4", scene_, world_, rig_, standing_.T_rig_robot,
+                    options_.overlay_width);
+  }
+  std::optional<VtuSeries> series;
+  if (options_.vtu) series.emplace(options_.out);
+
+  ProcessFrames(&tables, overlay ? &*overlay : nullptr, series ? &*series : nullptr);
+
+  report_.out = options_.out;
+  report_.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Judge();
+  tables.Commit();
+  if (overlay) overlay->Commit();
+  if (series) series->Commit();
+  WriteSummaryFile();
+  return report_;
+}
+
+}  // namespace
+
+void RunOptions::Check() const {
+  if (first_frame < 0 || end_frame <= first_frame) {
+    throw base::InputError("--frames", fmt::format("{}:{} is no range of frames", first_frame, end_frame),
+                           "Give A:B with 0 <= A < B: frames A up to but not including B.");
+  }
+  if (registration_frames < 1) {
+    throw base::InputError("registration_frames", "must be 1 or more");
+  }
+  if (overlay_width < 64) throw base::InputError("overlay_width", "must be 64 px or more");
+  tracker.Check();
+}
+
+RunReport Run(const std::filesystem::path& scene_file, const RunOptions& options) {
+  options.Check();
+  Job job(scene_file, options);
+  return job.Finish();
+}
+
+std::string RunReport::BriefReport() const {
+  return fmt::format("{} of {} frames with forces, {:.1f} s{}", usable_frames, frames, seconds,
+                     usable ? "" : "; NOT USABLE");
+}
+
+std::string RunReport::FullReport() const {
+  std::string text = BriefReport() + "\n";
+  for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
+  if (last) {
+    text += fmt::format("\nForces in frame {} ({:.3f} s)\n", last->frame, last->time_s);
+    text += fmt::format("  {:>9}  {:>23}  {:>27}  {:>9}  {:>9}\n", "candidate", "place, mm",
+                        "force, N", "norm, N", "sd, N");
+    for (const ForceResult& force : last->forces) {
+      const Eigen::Vector3d p = 1e3 * force.position;
+      text += fmt::format("  {:>9}  {:7.2f} {:7.2f} {:7.2f}  {:8.4f} {:8.4f} {:9.4f}  {:9.4f}  {:9.4f}\n",
+                          force.candidate, p.x(), p.y(), p.z(), force.force.x(), force.force.y(),
+                          force.force.z(), force.force.norm(), force.NormSd());
+    }
+  }
+  return text + "\nResults: " + out.string() + "\n";
+}
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,170 @@
+#include "softforce/pipeline/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "softforce/base/input_error.h"
+
+namespace softforce::pipeline {
+
+void TrackerOptions::Check() const {
+  if (!(motion_share > 0)) {
+    throw base::InputError("tracker: motion_share", "must be greater than 0");
+  }
+  if (!(prediction_floor > 0)) {
+    throw base::InputError("tracker: prediction_floor", "must be greater than 0 m");
+  }
+  if (!(threshold_displacement > 0)) {
+    throw base::InputError("tracker: threshold_displacement", "must be greater than 0");
+  }
+}
+
+Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Rig& rig,
+                 const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance,
+                 const TrackerOptions& options)
+    : scene_(scene),
+      world_(world),
+      rig_(rig),
+      T_rig_robot_(T_rig_robot),
+      options_(options),
+      features_(scene, world),
+      estimator_(world.solver.get(), world.sites, options.estimator),
+      intensity_covariance_(
+          Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
+  options_.Check();
+  // From a twist on the rig's side of T_rig_robot to one on the robot's side: the adjoint of its inverse.
+  const Eigen::Matrix3d R = T_rig_robot_.linear().transpose();
+  const Eigen::Vector3d t = -(R * T_rig_robot_.translation());
+  geometry::Matrix6d to_robot = geometry::Matrix6d::Zero();
+  to_robot.topLeftCorner<3, 3>() = to_robot.bottomRightCorner<3, 3>() = R;
+  to_robot.topRightCorner<3, 3>() = geometry::Skew(t) * R;
+  estimator_.SetRegistrationCovariance(to_robot * rig_covariance * to_robot.transpose());
+}
+
+std::vector<PredictedFeature> Tracker::Predict() {
+  const Eigen::Matrix3Xd& X = world_.mesh().nodes;
+  const Eigen::Matrix3Xd x = X + estimator_.state().u;
+  std::vector<PredictedFeature> predicted;
+  std::vector<Eigen::Matrix3Xd> compliance;
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(estimator_.num_components());  // m/N
+  for (const Feature& feature : features_.features()) {
+    predicted.push_back({feature.point.weights.Apply(x) + feature.point.offset, {},
+                         mesh::Normal(world_.surface, x, feature.point.at), feature.diameter});
+    compliance.push_back(estimator_.Compliance(feature.point.weights));
+    largest = largest.cwiseMax(compliance.back().colwise().norm().transpose());
+  }
+  const double motion = options_.motion_share * world_.marker_spacing;
+  const double softest = largest.size() > 0 ? largest.maxCoeff() : 0;
+  // A component that moves no marker must not be given an endless walk.
+  const Eigen::VectorXd walk = motion / largest.array().max(1e-3 * softest);  // N per frame
+  Eigen::MatrixXd covariance = intensity_covariance_;
+  covariance.diagonal() += walk.cwiseAbs2();
+  const double floor2 = options_.prediction_floor * options_.prediction_floor;
+  for (size_t f = 0; f < predicted.size(); ++f) {
+    predicted[f].covariance = compliance[f] * covariance * compliance[f].transpose() +
+                              floor2 * Eigen::Matrix3d::Identity();
+  }
+  return predicted;
+}
+
+FrameResult Tracker::Process(int frame, double time_s,
+                             const std::vector<CameraDetections>& detections) {
+  FrameResult result;
+  result.frame = frame;
+  result.time_s = time_s;
+  const std::vector<fem::CableCommand> commands = CommandsAt(scene_, time_s);
+  const fem::SolveSummary advanced = estimator_.Advance(commands);
+
+  features_.PlaceTags(rig_, T_rig_robot_, detections, estimator_.state().u);
+  const std::vector<PredictedFeature> predicted = Predict();
+  const FeatureSightings sightings =
+      scene_.markers.type == scene::MarkerType::kDot
+          ? AllocateDots(rig_, T_rig_robot_, predicted, detections,
+                         options_.threshold_displacement * world_.marker_spacing, options_.observe)
+          : AllocateTagCorners(scene_.markers, rig_, T_rig_robot_, features_.features(), predicted,
+                               detections, options_.observe);
+  const std::vector<FeatureObservation> located =
+      Locate(rig_, T_rig_robot_, predicted, sightings, options_.observe);
+
+  std::vector<estimation::Observation> observations;
+  std::vector<size_t> feature_of;
+  for (size_t f = 0; f < located.size(); ++f) {
+    if (located[f].whitening.rows() == 0) continue;
+    const BodyPoint& point = features_.features()[f].point;
+    observations.push_back(
+        {point.weights, point.offset, located[f].position, located[f].whitening});
+    feature_of.push_back(f);
+  }
+  const estimation::ForceEstimate estimate = estimator_.Estimate(observations, commands);
+
+  std::vector<char> rejected(located.size(), 0);
+  for (size_t i = 0; i < feature_of.size(); ++i) rejected[feature_of[i]] = estimate.rejected[i];
+  result.status = estimate.status;
+  result.reason = advanced.ok() ? estimate.reason : advanced.BriefReport();
+  result.chi2 = estimate.chi2;
+  result.degrees_of_freedom = estimate.degrees_of_freedom;
+  if (estimate.ok()) {
+    intensity_covariance_ = estimate.covariance;
+    result.forces = ForceResults(estimate);
+  }
+  result.markers = MarkerResults(located, rejected);
+  for (size_t c = 0; c < world_.solver->body().cables.size(); ++c) {
+    const auto i = static_cast<Eigen::Index>(c);
+    result.cables.push_back({world_.solver->body().cables[c].name, estimator_.state().tension(i),
+                             estimator_.state().shortening(i)});
+  }
+  return result;
+}
+
+std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& estimate) const {
+  const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
+  std::vector<ForceResult> forces;
+  for (int s = 0; s < static_cast<int>(world_.sites.size()); ++s) {
+    forces.push_back({scene_.forces.candidates[s].id, world_.sites[s].at.Apply(x),
+                      scene_.forces.candidates[s].position,
+                      estimator_.Force(estimate.intensity, s),
+                      estimator_.ForceCovariance(estimate.covariance, s)});
+  }
+  return forces;
+}
+
+// A dot is its only feature. A tag is measured by its corners: its centre is where the model has it, moved by the
+// mean misfit of the corners, since the surface between them is curved.
+std::vector<MarkerResult> Tracker::MarkerResults(
+    const std::vector<FeatureObservation>& observations, const std::vector<char>& rejected) const {
+  const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
+  std::vector<MarkerResult> markers;
+  for (size_t m = 0; m < world_.markers.size(); ++m) {
+    MarkerResult marker;
+    marker.id = scene_.markers.points[m].id;
+    marker.model = world_.markers[m].weights.Apply(x) + world_.markers[m].offset;
+    Eigen::Vector3d misfit = Eigen::Vector3d::Zero();
+    double variance = 0;
+    int seen = 0;
+    for (size_t f = 0; f < observations.size(); ++f) {
+      const Feature& feature = features_.features()[f];
+      const FeatureObservation& observation = observations[f];
+      if (feature.marker != static_cast<int>(m)) continue;
+      if (observation.status == FeatureObservation::Status::kInconsistent || rejected[f]) {
+        marker.status = MarkerStatus::kRejected;
+      }
+      if (!observation.position.allFinite()) continue;
+      misfit += observation.position - (feature.point.weights.Apply(x) + feature.point.offset);
+      variance += observation.covariance.trace() / 3;
+      ++seen;
+      if (marker.status == MarkerStatus::kRejected) continue;
+      const bool one_camera = observation.status == FeatureObservation::Status::kOneCamera;
+      if (one_camera || marker.status == MarkerStatus::kHidden) {
+        marker.status = one_camera ? MarkerStatus::kOneCamera : MarkerStatus::kSeen;
+      }
+    }
+    if (seen > 0) {
+      marker.measured = marker.model + misfit / seen;
+      marker.sd = std::sqrt(variance) / seen;
+    }
+    markers.push_back(marker);
+  }
+  return markers;
+}
+
+}  // namespace softforce::pipeline

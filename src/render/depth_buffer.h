@@ -1,0 +1,25 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "render/view.h"
+
+namespace softforce::render {
+
+// How far the nearest surface is at every pixel. It keeps inverse depths, because these are linear
+// in the picture over a flat face.
+class DepthBuffer {
+ public:
+  explicit DepthBuffer(cv::Size size) : inverse_depth_(cv::Mat1f::zeros(size)) {}
+
+  void AddTriangle(const Sight& a, const Sight& b, const Sight& c);
+
+  // Whether a surface stands before the point. A point on a surface, or within a pixel of the
+  // outline of the surface before it, is not hidden.
+  bool Hides(const cv::Point2d& pixel, double inverse_depth) const;
+
+ private:
+  cv::Mat1f inverse_depth_;  // 1/m; 0 where there is no surface
+};
+
+}  // namespace softforce::render

@@ -1,0 +1,56 @@
+#include <algorithm>
+
+#include "scene/sections.h"
+
+namespace softforce::scene {
+namespace {
+
+// Whether a source has the looks of a URL, a device or a GStreamer pipeline.
+bool LooksLive(const std::string& source) {
+  const auto has = [&](const char* part) { return source.find(part) != std::string::npos; };
+  return has("://") || source.rfind("/dev/", 0) == 0 || (has(" ") && has("!"));
+}
+
+std::string ReadSource(const YamlValue& value) {
+  std::error_code ignored;  // a pipeline may be too long for a file's name
+  const bool is_file = std::filesystem::is_regular_file(value.Path(), ignored);
+  if (!is_file && LooksLive(value.Text())) return value.Text();
+  return value.ExistingFile().string();
+}
+
+std::map<std::string, std::string> ReadSources(YamlMap& map) {
+  std::map<std::string, std::string> sources;
+  for (const std::string& camera : map.Keys()) sources[camera] = ReadSource(map.Required(camera));
+  if (sources.empty()) map.value().Fail("got no cameras, expected at least one");
+  return sources;
+}
+
+calibration::Fiducial ReadFiducial(YamlMap& map) {
+  calibration::Fiducial fiducial;
+  if (const auto family = map.Optional("family")) fiducial.family = family->Text();
+  fiducial.id = map.Required("id").Integer(0);
+  const std::vector<YamlValue> corners =
+      map.Required("corners", "Top left, top right, bottom right, bottom left of the upright tag.")
+          .Items({4});
+  std::transform(corners.begin(), corners.end(), fiducial.corners.begin(),
+                 [](const YamlValue& corner) { return corner.Vector(base::Dimension::kLength); });
+  return fiducial;
+}
+
+}  // namespace
+
+Cameras ReadCameras(YamlMap& map) {
+  Cameras cameras;
+  cameras.rig = map.Required("rig").ExistingFile();
+  cameras.sources = map.Required("sources", "Write for example: {left: left.mp4, right: right.mp4}")
+                        .ReadMap(ReadSources);
+  if (const auto fiducials = map.Optional("fiducials")) {
+    cameras.fiducials = fiducials->ReadMaps(ReadFiducial);
+    RefuseRepeated(*fiducials, cameras.fiducials, [](const calibration::Fiducial& fiducial) {
+      return "tag " + fiducial.family + " " + std::to_string(fiducial.id);
+    });
+  }
+  return cameras;
+}
+
+}  // namespace softforce::scene

@@ -1,0 +1,58 @@
+#include "softforce/scene/scene.h"
+
+#include "scene/sections.h"
+
+namespace softforce::scene {
+namespace {
+
+void ReadActuation(YamlMap& root, Scene& scene) {
+  if (const auto actuators = root.Optional("actuators")) {
+    scene.actuators = ReadActuators(*actuators);
+  }
+  if (scene.actuators.empty()) {
+    if (const auto table = root.Optional("actuation")) {
+      table->Fail("got a table of inputs, but the scene has no actuators",
+                  "List them under the key \"actuators\", or leave this key out.");
+    }
+    return;
+  }
+  scene.actuation_file =
+      root.Required("actuation", "The actuators need a table of their inputs over time.")
+          .ExistingFile();
+  scene.actuation = ReadActuationTable(*scene.actuation_file, scene.actuators);
+}
+
+// A tag of the body with the id of a tag of the base could be taken for it.
+void RefuseSharedTags(const Scene& scene, const YamlValue& root) {
+  if (scene.markers.type != MarkerType::kAprilTag) return;
+  for (const calibration::Fiducial& fiducial : scene.cameras.fiducials) {
+    for (const MarkerPoint& point : scene.markers.points) {
+      if (fiducial.family != scene.markers.family || fiducial.id != point.id) continue;
+      root.Fail("tag " + fiducial.family + " " + std::to_string(point.id) +
+                " is both a marker and a fiducial, expected different ids");
+    }
+  }
+}
+
+}  // namespace
+
+Scene LoadScene(const std::filesystem::path& file) {
+  return ReadYamlFile(file, [&](YamlMap& root) {
+    Scene scene;
+    scene.file = std::filesystem::absolute(file).lexically_normal();
+    scene.name = root.Required("name").Text();
+    ReadBody(root.Required("body"), scene);
+    ReadActuation(root, scene);
+    scene.markers = root.Required("markers").ReadMap(ReadMarkers);
+    scene.forces = root.Required("forces").ReadMap(ReadForces);
+    if (const auto measured = root.Optional("measured")) {
+      measured->Fail("motion-capture input is not available in this version of softforce",
+                     "Give \"cameras\" instead.");
+    }
+    scene.cameras = root.Required("cameras").ReadMap(ReadCameras);
+    RefuseSharedTags(scene, root.value());
+    return scene;
+  });
+}
+
+}  // namespace softforce::scene

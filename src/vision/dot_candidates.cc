@@ -1,0 +1,104 @@
+#include "vision/dot_candidates.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+namespace softforce::vision {
+namespace {
+
+// px, side of the square whose mean a pixel is held against. Larger discs become rings, and only
+// their outer contour counts; larger squares would join a dot to a bright or dark surface near by.
+constexpr int kNeighbourhood = 25;
+
+// Share of the smallest contrast that a pixel near the edge must stand out from the mean.
+constexpr double kThresholdShare = 0.3;
+
+int GreyAt(const cv::Mat& grey, const Eigen::Vector2d& p) {
+  const int x = std::clamp(static_cast<int>(std::lround(p.x())), 0, grey.cols - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(p.y())), 0, grey.rows - 1);
+  return grey.at<uchar>(y, x);
+}
+
+// The ellipse with the area moments of a closed contour through pixel centres. The blob reaches
+// half a pixel further out.
+std::optional<Ellipse> EllipseOf(const std::vector<cv::Point>& contour, double* area_share) {
+  const cv::Moments m = cv::moments(contour);
+  if (!(m.m00 > 0)) return std::nullopt;
+  Eigen::Matrix2d covariance;
+  covariance << m.mu20, m.mu11, m.mu11, m.mu02;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(covariance / m.m00);
+  const Eigen::Vector2d half = 2 * axes.eigenvalues().cwiseMax(0).cwiseSqrt();  // px
+  *area_share = m.m00 / (M_PI * half.prod());
+  const Eigen::Vector2d grown = half.array() + 0.5;
+  const Eigen::Matrix2d shape =
+      axes.eigenvectors() * grown.cwiseAbs2().asDiagonal() * axes.eigenvectors().transpose();
+  return Ellipse({m.m10 / m.m00, m.m01 / m.m00}, shape);
+}
+
+// A first look at a few pixels: a disc is brighter (darker) inside than around it nearly
+// everywhere. Few blobs of a picture's clutter are, so that only few need to be measured.
+bool StandsOut(const cv::Mat& smooth, const Ellipse& ellipse, bool bright, double min_contrast) {
+  constexpr int kDirections = 8;
+  constexpr int kMaxExceptions = 2;
+  constexpr double kOutside = 2.5;  // px from the contour, where blur has faded
+  const int inside = GreyAt(smooth, ellipse.centre());
+  int exceptions = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector2d contour = ellipse.ContourAt(2 * M_PI * i / kDirections);
+    const int here = GreyAt(smooth, ellipse.centre() + 0.4 * contour);
+    const int around = GreyAt(smooth, ellipse.centre() + contour + kOutside * contour.normalized());
+    const double contrast =
+        bright ? std::min(here, inside) - around : around - std::max(here, inside);
+    exceptions += contrast < 0.5 * min_contrast;
+  }
+  return exceptions <= kMaxExceptions;
+}
+
+void CollectBlobs(const cv::Mat& mask, const cv::Mat& smooth, bool bright,
+                  const DotOptions& options, std::vector<Ellipse>* blobs) {
+  constexpr double kSlack = 2;            // px; blur and the threshold shift the contour
+  constexpr double kMinAreaShare = 0.85;  // of the ellipse with the contour's moments; a disc has 1
+  std::vector<std::vector<cv::Point>> contours;
+  std::vector<cv::Vec4i> hierarchy;
+  cv::findContours(mask, contours, hierarchy, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
+  for (size_t i = 0; i < contours.size(); ++i) {
+    if (hierarchy[i][3] >= 0 || contours[i].size() < 4) continue;  // a hole, or a speck
+    const cv::Rect box = cv::boundingRect(contours[i]);
+    if (std::max(box.width, box.height) > options.max_diameter + kSlack ||
+        std::max(box.width, box.height) < options.min_diameter - kSlack) {
+      continue;
+    }
+    double area_share = 0;
+    const std::optional<Ellipse> ellipse = EllipseOf(contours[i], &area_share);
+    if (!ellipse || 2 * ellipse->short_half() < options.min_diameter - kSlack) continue;
+    if (area_share < kMinAreaShare) continue;
+    if (StandsOut(smooth, *ellipse, bright, options.min_contrast)) blobs->push_back(*ellipse);
+  }
+}
+
+}  // namespace
+
+std::vector<Ellipse> FindEllipticBlobs(const cv::Mat& grey, const DotOptions& options) {
+  cv::Mat smooth, mean, above, mask;
+  cv::GaussianBlur(grey, smooth, cv::Size(3, 3),
+                   0);  // single noisy pixels would each become a blob
+  cv::blur(smooth, mean, cv::Size(kNeighbourhood, kNeighbourhood));
+  std::vector<Ellipse> blobs;
+  for (const bool bright : {true, false}) {
+    if (options.polarity == (bright ? DotPolarity::kDark : DotPolarity::kBright)) continue;
+    if (bright) {
+      cv::subtract(smooth, mean, above);
+    } else {
+      cv::subtract(mean, smooth, above);
+    }
+    cv::threshold(above, mask, kThresholdShare * options.min_contrast, 255, cv::THRESH_BINARY);
+    CollectBlobs(mask, smooth, bright, options, &blobs);
+  }
+  return blobs;
+}
+
+}  // namespace softforce::vision

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "softforce/vision/dots.h"
+#include "vision/ellipse.h"
+
+namespace softforce::vision {
+
+// Blobs that are brighter (or darker) than their surroundings and roughly elliptic, to a pixel or
+// so. Generous: what is returned still has to be looked at closely.
+std::vector<Ellipse> FindEllipticBlobs(const cv::Mat& grey, const DotOptions& options);
+
+}  // namespace softforce::vision

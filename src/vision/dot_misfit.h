@@ -1,0 +1,25 @@
+#pragma once
+
+#include "vision/dot_patch.h"
+
+namespace softforce::vision {
+
+// A sharp ellipse and the blur (px, standard deviation, with the pixel's own) that it is seen with.
+struct BlurredEllipse {
+  Ellipse ellipse;
+  double blur;
+};
+
+// How the picture of a dot differs from that of a blurred ellipse.
+struct Misfit {
+  double
+      area_share;  // of the ellipse, that the dot exceeds or leaves out, beyond what noise explains
+  double roughness;  // mean squared misfit of an edge pixel, over the noise's variance
+};
+
+// `patch_centre` is the place (px) from which the patch's pixels are counted; `area` is the dot's,
+// px².
+Misfit MeasureMisfit(const Patch& patch, const Levels& levels, const Eigen::Vector2d& patch_centre,
+                     const BlurredEllipse& disc, double area);
+
+}  // namespace softforce::vision

@@ -1,0 +1,135 @@
+#include "softforce/vision/tags.h"
+
+#include <apriltag.h>
+#include <fmt/format.h>
+#include <tag16h5.h>
+#include <tag25h9.h>
+#include <tag36h11.h>
+#include <tagStandard41h12.h>
+
+#include <algorithm>
+#include <array>
+
+#include "softforce/base/input_error.h"
+#include "vision/tag_edges.h"
+
+namespace softforce::vision {
+namespace {
+
+// AprilTag 3 has the pixel CORNER at (0, 0); the project, like OpenCV, the pixel CENTRE.
+constexpr double kHalfPixel = 0.5;
+
+// How a tag stands upright is a matter of convention: OpenCV draws the classic families turned by half a turn against
+// AprilTag's own pictures. OpenCV's way holds here; families that it does not draw stand as AprilTag draws them.
+struct FamilyMaker {
+  const char* name;
+  bool turned_by_opencv;
+  apriltag_family_t* (*create)();
+  void (*destroy)(apriltag_family_t*);
+};
+constexpr std::array<FamilyMaker, 4> kFamilies{{
+    {"tag36h11", true, tag36h11_create, tag36h11_destroy},
+    {"tag25h9", true, tag25h9_create, tag25h9_destroy},
+    {"tag16h5", true, tag16h5_create, tag16h5_destroy},
+    {"tagStandard41h12", false, tagStandard41h12_create, tagStandard41h12_destroy},
+}};
+
+const FamilyMaker& MakerOf(const std::string& family) {
+  std::string known;
+  for (const FamilyMaker& maker : kFamilies) {
+    if (family == maker.name) return maker;
+    known += std::string(known.empty() ? "" : ", ") + maker.name;
+  }
+  throw base::InputError("tag family",
+                         fmt::format("\"{}\" is not known; expected one of {}", family, known));
+}
+
+}  // namespace
+
+void TagOptions::Check() const {
+  const auto require = [](bool holds, const char* option, const char* rule) {
+    if (!holds) throw base::InputError(std::string("tags: ") + option, rule);
+  };
+  require(decimate >= 1 && decimate <= 8, "decimate", "must lie between 1 and 8");
+  require(max_corrected_bits >= 0 && max_corrected_bits <= 3, "max_corrected_bits",
+          "must lie between 0 and 3");
+  require(min_decision_margin >= 0, "min_decision_margin", "must be 0 or more");
+  require(border >= 0, "border", "must be 0 px or more");
+}
+
+struct TagDetector::State {
+  const FamilyMaker& maker;
+  TagOptions options;
+  apriltag_family_t* family;
+  apriltag_detector_t* detector;
+
+  State(const std::string& name, const TagOptions& options_in)
+      : maker(MakerOf(name)), options(options_in) {
+    options.Check();
+    family = maker.create();
+    detector = apriltag_detector_create();
+    apriltag_detector_add_family_bits(detector, family, options.max_corrected_bits);
+    detector->quad_decimate = static_cast<float>(options.decimate);
+    detector->nthreads = 1;
+    detector->refine_edges = true;
+  }
+  ~State() {
+    apriltag_detector_destroy(detector);
+    maker.destroy(family);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  std::optional<Tag> Accept(const cv::Mat& grey, const apriltag_detection_t& found) const;
+};
+
+std::optional<Tag> TagDetector::State::Accept(const cv::Mat& grey,
+                                              const apriltag_detection_t& found) const {
+  if (found.decision_margin < options.min_decision_margin) return std::nullopt;
+  Tag tag;
+  tag.family = maker.name;
+  tag.id = found.id;
+  tag.decision_margin = found.decision_margin;
+  // AprilTag lists bottom left, bottom right, top right, top left of the tag as it draws it.
+  for (int i = 0; i < 4; ++i) {
+    const double* p = found.p[(maker.turned_by_opencv ? 5 - i : 3 - i) % 4];
+    tag.corners[i] = Eigen::Vector2d(p[0], p[1]).array() - kHalfPixel;
+  }
+  const std::optional<RefinedCorners> refined =
+      RefineCorners(grey, tag.corners, family->width_at_border, family->reversed_border);
+  if (!refined) return std::nullopt;
+  tag.corners = refined->corners;
+  tag.corner_covariances = refined->covariances;
+  for (const Eigen::Vector2d& corner : tag.corners) {
+    if (corner.minCoeff() < options.border || corner.x() > grey.cols - 1 - options.border ||
+        corner.y() > grey.rows - 1 - options.border) {
+      return std::nullopt;
+    }
+  }
+  return tag;
+}
+
+TagDetector::TagDetector(const std::string& family, const TagOptions& options)
+    : state_(std::make_unique<State>(family, options)) {}
+TagDetector::~TagDetector() = default;
+TagDetector::TagDetector(TagDetector&&) noexcept = default;
+
+std::vector<Tag> TagDetector::Detect(const cv::Mat& grey) const {
+  CV_Assert(grey.type() == CV_8UC1);
+  // AprilTag only reads the picture; its interface wants it writable all the same.
+  image_u8_t view{grey.cols, grey.rows, static_cast<int>(grey.step), const_cast<uchar*>(grey.data)};
+  zarray_t* found = apriltag_detector_detect(state_->detector, &view);
+  std::vector<Tag> tags;
+  for (int i = 0; i < zarray_size(found); ++i) {
+    apriltag_detection_t* detection = nullptr;
+    zarray_get(found, i, &detection);
+    if (auto tag = state_->Accept(grey, *detection)) tags.push_back(std::move(*tag));
+  }
+  apriltag_detections_destroy(found);
+  std::sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) {
+    return std::make_pair(a.id, a.corners[0].y()) < std::make_pair(b.id, b.corners[0].y());
+  });
+  return tags;
+}
+
+}  // namespace softforce::vision

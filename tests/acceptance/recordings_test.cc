@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "acceptance/program.h"
+
+namespace softforce {
+namespace {
+
+// A recording with truth, and how large the mean force error over its hold phase may be (per cent). The physics are
+// CalculiX's on a mesh several times finer, which the given meshes are too stiff against: see docs/accuracy.md.
+struct RecordingCase {
+  const char* name;
+  const char* hold;
+  double max_error;
+};
+
+class EveryRecording : public ::testing::TestWithParam<RecordingCase> {};
+
+TEST_P(EveryRecording, GivesForcesWithinItsBound) {
+  const RecordingCase& recording = GetParam();
+  const std::filesystem::path folder =
+      std::filesystem::path(SOFTFORCE_SOURCE_DIR) / "../shared/recordings" / recording.name;
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recording at " << folder;
+  const std::filesystem::path out = testing::FreshFolder(recording.name);
+
+  const testing::ProgramResult run = testing::RunProgram(
+      fmt::format("run '{}' --out '{}'", (folder / "scene.yaml").string(), out.string()));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const testing::ProgramResult comparison = testing::RunCommand(
+      fmt::format("'{}/scripts/compare_with_truth' '{}' '{}' --hold {} --max-error {}",
+                  SOFTFORCE_SOURCE_DIR, out.string(), (folder / "truth.json").string(),
+                  recording.hold, recording.max_error));
+
+  std::cout << recording.name << ", at most " << recording.max_error << " % allowed:\n"
+            << comparison.output;
+  EXPECT_EQ(comparison.exit_code, 0) << comparison.output << comparison.errors;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, EveryRecording,
+                         ::testing::Values(RecordingCase{"sheet_two_weights", "20:29", 3},
+                                           RecordingCase{"sheet_two_weights_tags", "20:29", 3},
+                                           RecordingCase{"robot_tip_weight", "25:29", 5}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(Demo, WritesEveryFileAndOnlyComplete) {
+  const std::filesystem::path out = testing::FreshFolder("demo");
+  const std::string scene = std::string(SOFTFORCE_SOURCE_DIR) + "/datasets/sheet_two_weights/scene.yaml";
+
+  const testing::ProgramResult run =
+      testing::RunProgram(fmt::format("run '{}' --out '{}' --frames 0:4 --vtu", scene, out.string()));
+
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  for (const char* name : {"forces.csv", "markers.csv", "summary.json", "overlay.mp4", "results.pvd",
+                           "vtu/frame_00003.vtu"}) {
+    EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
+  }
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+  }
+  EXPECT_EQ(testing::ReadTable(out / "forces.csv").size(), 4u * 2);
+  EXPECT_EQ(testing::ReadTable(out / "markers.csv").size(), 4u * 14);
+}
+
+TEST(Demo, GivesTheSameBytesTwice) {
+  const std::string scene = std::string(SOFTFORCE_SOURCE_DIR) + "/datasets/sheet_two_weights/scene.yaml";
+  std::string first;
+  for (int i = 0; i < 2; ++i) {
+    const std::filesystem::path out = testing::FreshFolder("twice");
+    const testing::ProgramResult run = testing::RunProgram(
+        fmt::format("run '{}' --out '{}' --frames 0:3 --no-overlay", scene, out.string()));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const std::string bytes = testing::ReadText(out / "forces.csv") + testing::ReadText(out / "markers.csv");
+    if (i == 0) first = bytes;
+    EXPECT_EQ(bytes, first);
+  }
+}
+
+TEST(Program, ExplainsItself) {
+  EXPECT_EQ(testing::RunProgram("--help").exit_code, 0);
+  const testing::ProgramResult help = testing::RunProgram("run --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_NE(help.output.find("--frames"), std::string::npos);
+  EXPECT_EQ(testing::RunProgram("--version").exit_code, 0);
+  EXPECT_EQ(testing::RunProgram("").exit_code, 2);
+  EXPECT_EQ(testing::RunProgram("run").exit_code, 2);
+  EXPECT_EQ(testing::RunProgram("run scene.yaml --no-such-option").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace softforce

@@ -1,0 +1,178 @@
+#include "softforce/fem/static_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "softforce/base/input_error.h"
+#include "support/soft_bodies.h"
+
+namespace softforce::fem {
+namespace {
+
+class EveryOrder : public ::testing::TestWithParam<int> {};
+
+TEST_P(EveryOrder, AnAffineDeformationIsReproducedExactly) {
+  // The patch test: the boundary of a distorted mesh is moved affinely; the inside has to follow.
+  Body body;
+  body.mesh = testing::MakeBox(3, 3, 3, {0.03, 0.03, 0.03});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> shift(-1e-3, 1e-3);
+  for (int n = 0; n < body.mesh.num_nodes(); ++n) {
+    const Eigen::Vector3d X = body.mesh.nodes.col(n);
+    const bool inside = X.minCoeff() > 1e-9 && X.maxCoeff() < 0.03 - 1e-9;
+    if (inside) body.mesh.nodes.col(n) += Eigen::Vector3d(shift(random), shift(random), shift(random));
+  }
+  if (GetParam() == 2) body.mesh = mesh::RaiseOrder(body.mesh);
+  body.materials = {testing::Silicone()};
+  Eigen::Matrix3d A;
+  A << 0.1, 0.05, 0, -0.02, -0.05, 0.03, 0.04, 0, 0.08;
+  const Eigen::Matrix3Xd affine = A * body.mesh.nodes;
+  for (int n = 0; n < body.mesh.num_nodes(); ++n) {
+    const Eigen::Vector3d X = body.mesh.nodes.col(n);
+    if (X.minCoeff() < 1e-9 || X.maxCoeff() > 0.03 - 1e-9) body.fixed_nodes.push_back(n);
+  }
+  StaticSolverOptions options;
+  options.step_tolerance = 1e-12;
+  StaticSolver solver(body, "body", options);
+  Equilibrium state = solver.AtRest();
+  state.u = 0.9 * affine;  // the inside starts elsewhere
+  for (const int n : body.fixed_nodes) state.u.col(n) = affine.col(n);
+  LoadCase load = state.load;
+
+  const SolveSummary summary = solver.Solve(load, &state);
+
+  ASSERT_TRUE(summary.ok()) << summary.BriefReport();
+  EXPECT_LT((state.u - affine).cwiseAbs().maxCoeff(), 1e-12);  // m; round-off of 3 cm
+}
+
+TEST_P(EveryOrder, ARigidMotionMakesNoForce) {
+  const Body body = testing::MakeBar(GetParam());
+  const StaticSolver solver(body, "body");
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const Eigen::Matrix3Xd u =
+      ((R - Eigen::Matrix3d::Identity()) * body.mesh.nodes).colwise() + Eigen::Vector3d(1, -2, 3);
+
+  EXPECT_LT(solver.InternalForces(u).cwiseAbs().maxCoeff(), 1e-9);  // N, round-off of 200 kPa
+}
+
+TEST_P(EveryOrder, SensitivityIsTheDerivativeOfTheEquilibrium) {
+  const Body body = testing::MakeBar(GetParam());
+  StaticSolver solver(body, "body");
+  const mesh::NodalWeights tip = testing::PointOf(body, {0.1, 0.005, 0.01});
+  Equilibrium state = solver.AtRest();
+  const Eigen::Vector3d force(0.01, 0.005, -0.03);
+  ASSERT_TRUE(solver.Solve(testing::LoadAt(body, tip, force), &state).ok());
+  Eigen::MatrixXd columns(3 * body.mesh.num_nodes(), 3);
+  for (int i = 0; i < 3; ++i) {
+    columns.col(i) = testing::LoadAt(body, tip, Eigen::Vector3d::Unit(i)).forces.reshaped();
+  }
+
+  const Sensitivity sensitivity = solver.Solve(state, columns, 0);
+
+  for (int i = 0; i < 3; ++i) {
+    const double h = 1e-5;  // N
+    const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(i);
+    Equilibrium up = state, down = state;
+    ASSERT_TRUE(solver.Solve(testing::LoadAt(body, tip, force + step), &up).ok());
+    ASSERT_TRUE(solver.Solve(testing::LoadAt(body, tip, force - step), &down).ok());
+    const Eigen::VectorXd slope = ((up.u - down.u) / (2 * h)).reshaped();
+    EXPECT_LT((sensitivity.du.col(i) - slope).norm(), 1e-4 * slope.norm());
+  }
+}
+
+TEST_P(EveryOrder, LargeLoadsAreReachedFromRest) {
+  const Body body = testing::MakeBar(GetParam());
+  StaticSolver solver(body, "body");
+  Equilibrium state = solver.AtRest();
+  const auto tip = testing::PointOf(body, {0.1, 0.005, 0.005});
+
+  // P L² / (E I) = 6: the bar bends by more than 60 degrees.
+  const double load = 6 * 200e3 * (1e-8 / 12) / 0.01;
+  const SolveSummary summary = solver.Solve(testing::LoadAt(body, tip, {0, 0, -load}), &state);
+
+  EXPECT_TRUE(summary.ok()) << summary.BriefReport();
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, EveryOrder, ::testing::Values(1, 2));
+
+TEST(StaticSolver, BendsABeamAsTheElasticaDoes) {
+  // P L² / (E I) = 1: w/L = 0.30172. Poisson's ratio 0 and a slender bar, as the elastica assumes.
+  Body body;
+  body.mesh = mesh::RaiseOrder(testing::MakeBox(30, 1, 1, {0.3, 0.01, 0.01}));
+  body.materials = {{MaterialModel::kStVenantKirchhoff, 200e3, 0.0}};
+  for (int n = 0; n < body.mesh.num_nodes(); ++n) {
+    if (body.mesh.nodes(0, n) < 1e-9) body.fixed_nodes.push_back(n);
+  }
+  StaticSolver solver(body, "body");
+  Equilibrium state = solver.AtRest();
+  const auto tip = testing::PointOf(body, {0.3, 0.005, 0.005});
+  const double load = 200e3 * (1e-8 / 12) / (0.3 * 0.3);
+
+  ASSERT_TRUE(solver.Solve(testing::LoadAt(body, tip, {0, 0, -load}), &state).ok());
+
+  EXPECT_NEAR(-tip.Apply(state.u).z() / 0.3, 0.30172, 0.003);  // 1 %: shear and the mesh
+}
+
+TEST(StaticSolver, HangsUnderItsWeight) {
+  // A bar hanging along gravity: elongation rho g L² / (2 E), at small strain.
+  Body body = testing::MakeBar();
+  body.materials = {{MaterialModel::kNeoHookean, 2e6, 0.0}};
+  body.density = 1000;
+  body.gravity = {9.81, 0, 0};
+  StaticSolver solver(body, "body");
+  Equilibrium state = solver.AtRest();
+
+  ASSERT_TRUE(solver.Solve(LoadCase{state.load}, &state).ok());
+
+  const double expected = 1000 * 9.81 * 0.01 / (2 * 2e6);
+  const auto tip = testing::PointOf(body, {0.1, 0.005, 0.005});
+  EXPECT_NEAR(tip.Apply(state.u).x(), expected, 0.002 * expected);
+}
+
+TEST(StaticSolver, GivesTheSameFromOtherStarts) {
+  const Body body = testing::MakeBar();
+  StaticSolver solver(body, "body");
+  const auto tip = testing::PointOf(body, {0.1, 0.005, 0.005});
+  const LoadCase load = testing::LoadAt(body, tip, {0, 0.01, -0.02});
+  Equilibrium direct = solver.AtRest();
+  ASSERT_TRUE(solver.Solve(load, &direct).ok());
+  Equilibrium around = solver.AtRest();
+  ASSERT_TRUE(solver.Solve(testing::LoadAt(body, tip, {0.01, -0.02, 0.03}), &around).ok());
+  ASSERT_TRUE(solver.Solve(load, &around).ok());
+
+  EXPECT_LT((direct.u - around.u).cwiseAbs().maxCoeff(), 1e-8);  // m; ten times the step tolerance
+}
+
+TEST(StaticSolver, SaysWhenItCannotAndKeepsTheLastEquilibrium) {
+  const Body body = testing::MakeBar(1, 4);
+  StaticSolverOptions options;
+  options.max_load_halvings = 2;
+  options.max_iterations = 5;
+  StaticSolver solver(body, "body", options);
+  Equilibrium state = solver.AtRest();
+  const auto tip = testing::PointOf(body, {0.1, 0.005, 0.005});
+
+  const SolveSummary summary = solver.Solve(testing::LoadAt(body, tip, {-500, 0, 0}), &state);
+
+  EXPECT_EQ(summary.status, SolveSummary::Status::kNotConverged);
+  EXPECT_LT(summary.reached_share, 1);
+  EXPECT_TRUE(state.u.allFinite());
+}
+
+TEST(StaticSolver, RefusesOptionsOutOfRange) {
+  const auto refuses = [](auto change) {
+    StaticSolverOptions options;
+    change(options);
+    EXPECT_THROW(options.Check(), base::InputError);
+  };
+  refuses([](StaticSolverOptions& o) { o.step_tolerance = 0; });
+  refuses([](StaticSolverOptions& o) { o.max_iterations = 0; });
+  refuses([](StaticSolverOptions& o) { o.stale_contraction = 1; });
+  refuses([](StaticSolverOptions& o) { o.max_load_halvings = -1; });
+}
+
+}  // namespace
+}  // namespace softforce::fem

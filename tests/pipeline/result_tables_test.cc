@@ -1,0 +1,84 @@
+#include "pipeline/result_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace softforce::pipeline {
+namespace {
+
+std::filesystem::path FreshFolder(const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+std::string ReadText(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+FrameResult GoodFrame() {
+  FrameResult result;
+  result.frame = 3;
+  result.time_s = 0.1;
+  result.status = estimation::ForceEstimate::Status::kOk;
+  result.forces.push_back({7,
+                           {0.01, 0.02, 0.03},
+                           {0.011, 0.02, 0.03},
+                           {0, 0, -0.5},
+                           Eigen::Vector3d(0.01, 0.02, 0.03).cwiseAbs2().asDiagonal()});
+  MarkerResult hidden;
+  hidden.id = 2;
+  hidden.model = {0.001, 0.002, 0.003};
+  result.markers.push_back(hidden);
+  result.cables.push_back({"left", 0.9, 0.008});
+  return result;
+}
+
+TEST(ResultTables, WriteTheColumnsThatScriptsRead) {
+  const std::filesystem::path folder = FreshFolder("result_tables_columns");
+  ResultTables tables(folder, true);
+  tables.Add(GoodFrame());
+  tables.Commit();
+
+  EXPECT_EQ(ReadText(folder / "forces.csv"),
+            "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_N,fy_N,fz_N,"
+            "norm_N,sd_x_N,sd_y_N,sd_z_N,sd_location_mm\n"
+            "3,0.100000,0,7,ok,10.0000,20.0000,30.0000,11.0000,20.0000,30.0000,0.000000,0.000000,-0.500000,"
+            "0.500000,0.010000,0.020000,0.030000,0.0000\n");
+  EXPECT_EQ(ReadText(folder / "markers.csv"),
+            "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,residual_mm\n"
+            "3,0.100000,2,hidden,,,,,1.0000,2.0000,3.0000,\n");
+  EXPECT_EQ(ReadText(folder / "actuation.csv"),
+            "frame,time_s,actuator,tension_N,displacement_mm\n3,0.100000,left,0.900000,8.00000\n");
+}
+
+TEST(ResultTables, SayWhyAFrameIsNotUsable) {
+  const std::filesystem::path folder = FreshFolder("result_tables_lost");
+  FrameResult lost = GoodFrame();
+  lost.forces.clear();
+  lost.status = estimation::ForceEstimate::Status::kTooFewObservations;
+  ResultTables tables(folder, false);
+  tables.Add(lost);
+  tables.Commit();
+
+  const std::string text = ReadText(folder / "forces.csv");
+  EXPECT_NE(text.find("\n3,0.100000,,,too_few_markers,,,,,,,,,,,,,,\n"), std::string::npos) << text;
+  EXPECT_FALSE(std::filesystem::exists(folder / "actuation.csv"));
+}
+
+TEST(ResultTables, LeaveNothingUnlessCommitted) {
+  const std::filesystem::path folder = FreshFolder("result_tables_abandoned");
+  {
+    ResultTables tables(folder, true);
+    tables.Add(GoodFrame());
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+}  // namespace
+}  // namespace softforce::pipeline
