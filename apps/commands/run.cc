@@ -81,7 +81,8 @@ Command AddRun(CLI::App* program) {
   app->add_option("scene", arguments->scene, "Scene file (scene.yaml)")->required();
   app->add_option("--out", arguments->out, "Folder for the results")->capture_default_str();
   app->add_option("--camera", arguments->cameras,
-                  "NAME=SOURCE: video file of a camera instead of the scene's; may be repeated");
+                  "NAME=SOURCE: video file of a camera instead of the scene's; may be repeated")
+      ->allow_extra_args(false);
   app->add_option("--frames", arguments->frames,
                   "A:B: frames A up to but not including B, counted from 0; default all");
   app->add_option("--registration-frames", arguments->options.registration_frames,

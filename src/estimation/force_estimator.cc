@@ -15,6 +15,10 @@
 namespace softforce::estimation {
 namespace {
 
+// The model's error is scaled by the displacement, which the fit changes: repeated until it is settled to 20 %.
+constexpr int kMaxScaleRounds = 4;
+constexpr double kScaleTolerance = 0.2;
+
 constexpr double kOffsetFloor = 1e-9;  // m; far below what any camera sees
 
 bool IsFinite(const Observation& observation) {
@@ -36,7 +40,7 @@ Eigen::MatrixXd WithModelError(const Eigen::MatrixXd& whitening, double model_sd
 
 void EstimatorOptions::Check() const {
   const auto require = [](bool holds, const char* option, const char* rule) {
-    if (!holds) throw base::InputError(std::string("estimator: ") + option, rule);
+    if (!holds) throw base::InputError(std::string("estimator option ") + option, rule);
   };
   require(common_model_error >= 0, "common_model_error", "must be 0 or more");
   require(local_model_error >= 0, "local_model_error", "must be 0 or more");
@@ -58,6 +62,7 @@ const char* Name(ForceEstimate::Status status) {
     case ForceEstimate::Status::kTooFewObservations: return "too_few_markers";
     case ForceEstimate::Status::kUnobservable: return "unobservable";
     case ForceEstimate::Status::kNotConverged: return "not_converged";
+    case ForceEstimate::Status::kInconsistent: return "inconsistent";
   }
   return "";
 }
@@ -145,27 +150,45 @@ OffsetPrior ForceEstimator::MakeOffsetPrior(const std::vector<WhitenedObservatio
   return prior;
 }
 
+double ForceEstimator::LargestDisplacement(const std::vector<Observation>& observations) const {
+  double largest = 0;
+  for (const Observation& seen : observations) {
+    largest = std::max(largest, seen.at.Apply(state_.u).norm());
+  }
+  return largest;
+}
+
+std::vector<WhitenedObservation> ForceEstimator::Whiten(const std::vector<Observation>& observations,
+                                                        double displacement,
+                                                        ForceEstimate* estimate) const {
+  std::vector<WhitenedObservation> used;
+  for (int i = 0; i < static_cast<int>(observations.size()); ++i) {
+    const Observation& seen = observations[i];
+    estimate->rejected[i] = !IsFinite(seen);
+    if (estimate->rejected[i]) continue;
+    used.push_back(
+        {i, &seen, WithModelError(seen.whitening, options_.local_model_error * displacement)});
+  }
+  return used;
+}
+
 ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observations,
                                        const std::vector<fem::CableCommand>& commands) {
   const fem::Equilibrium before = state_;
   const Eigen::VectorXd intensity_before = intensity_;
   ForceEstimate estimate;
-  estimate.rejected.assign(observations.size(), 0);
-
-  double largest_displacement = 0;  // m
-  for (const Observation& seen : observations) {
-    largest_displacement = std::max(largest_displacement, seen.at.Apply(state_.u).norm());
+  double scale = LargestDisplacement(observations);
+  for (int round = 0; round < kMaxScaleRounds; ++round) {
+    estimate = ForceEstimate();
+    estimate.rejected.assign(observations.size(), 0);
+    FitAndReject(Whiten(observations, scale, &estimate), options_.common_model_error * scale, commands,
+                 &estimate);
+    // The model's error goes with how far the body has moved, which only the fit tells: after a jump, fit again.
+    const double fitted = LargestDisplacement(observations);
+    const bool settled = std::abs(fitted - scale) <= kScaleTolerance * std::max(fitted, scale);
+    scale = fitted;
+    if (!estimate.ok() || settled) break;
   }
-  std::vector<WhitenedObservation> used;
-  for (int i = 0; i < static_cast<int>(observations.size()); ++i) {
-    const Observation& seen = observations[i];
-    estimate.rejected[i] = !IsFinite(seen);
-    if (estimate.rejected[i]) continue;
-    used.push_back({i, &seen,
-                    WithModelError(seen.whitening, options_.local_model_error * largest_displacement)});
-  }
-
-  FitAndReject(used, options_.common_model_error * largest_displacement, commands, &estimate);
   if (!estimate.ok()) {
     state_ = before;
     intensity_ = state_intensity_ = intensity_before;
@@ -206,8 +229,14 @@ void ForceEstimator::FitAndReject(std::vector<WhitenedObservation> used, double 
     Eigen::MatrixXd J(rows + 6, n + 6);
     const int worst = Assess(used, prior, body, parameters, &J, estimate);
     estimate->degrees_of_freedom = rows - n;
-    if (worst < 0 || rejections >= most_rejected) {
+    if (worst < 0) {
       Conclude(J, parameters, estimate);
+      return;
+    }
+    if (rejections >= most_rejected) {
+      estimate->status = ForceEstimate::Status::kInconsistent;
+      estimate->reason =
+          fmt::format("after {} rejections there are still observations that no force explains", rejections);
       return;
     }
     estimate->rejected[used[worst].index] = 1;

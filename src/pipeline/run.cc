@@ -20,12 +20,28 @@
 namespace softforce::pipeline {
 namespace {
 
+constexpr int kMaxFrameWarnings = 20;  // about single frames; the rest is counted
+
 std::vector<vision::Recording::Source> Sources(const scene::Scene& scene, const RunOptions& options) {
   std::map<std::string, std::string> sources = scene.cameras.sources;
   for (const auto& [camera, source] : options.sources) sources[camera] = source;
   std::vector<vision::Recording::Source> files;
   for (const auto& [camera, source] : sources) files.push_back({camera, source});
   return files;
+}
+
+// Live cameras are named by a URL, a device or a GStreamer pipeline.
+void RefuseLiveSources(const scene::Scene& scene, const std::vector<vision::Recording::Source>& sources) {
+  for (const vision::Recording::Source& source : sources) {
+    const std::string name = source.file.string();
+    if (name.find("://") == std::string::npos && name.find('!') == std::string::npos &&
+        name.rfind("/dev/", 0) != 0) {
+      continue;
+    }
+    throw base::InputError(scene.file.string() + ": cameras: sources: " + source.camera,
+                           fmt::format("\"{}\" is a live source, but this version reads files only", name),
+                           "Record the cameras to files first.");
+  }
 }
 
 void RefuseUnknownLocations(const scene::Scene& scene) {
@@ -73,8 +89,8 @@ class Job {
       : options_(options),
         scene_(scene::LoadScene(scene_file)),
         rig_(scene::LoadRig(scene_.cameras.rig)),
-        sources_((RefuseUnknownLocations(scene_), Sources(scene_, options))),
-        recording_(rig_, sources_),
+        sources_(Sources(scene_, options)),
+        recording_(OpenRecording()),
         world_(BuildWorld(scene_)),
         detector_(scene_),
         standing_(FindRig(scene_, rig_, detector_, options.registration_frames, &recording_)),
@@ -85,6 +101,9 @@ class Job {
   RunReport Finish();
 
  private:
+  vision::Recording OpenRecording() const;
+  std::vector<std::filesystem::path> Inputs() const;
+  void RefuseToOverwriteInputs() const;
   void ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series);
   FrameResult ProcessFrame(const vision::FrameSet& frame);
   void Judge();
@@ -104,7 +123,34 @@ class Job {
   StageClock clock_;
   RunReport report_;
   std::map<std::string, int> frame_statuses_, marker_statuses_;
+  std::vector<double> reduced_chi2_;  // of each frame
 };
+
+vision::Recording Job::OpenRecording() const {
+  RefuseUnknownLocations(scene_);
+  RefuseLiveSources(scene_, sources_);
+  RefuseToOverwriteInputs();
+  return vision::Recording(rig_, sources_);
+}
+
+std::vector<std::filesystem::path> Job::Inputs() const {
+  std::vector<std::filesystem::path> inputs{scene_.file, scene_.mesh.file, scene_.cameras.rig};
+  if (scene_.actuation_file) inputs.push_back(*scene_.actuation_file);
+  for (const vision::Recording::Source& source : sources_) inputs.push_back(source.file);
+  return inputs;
+}
+
+void Job::RefuseToOverwriteInputs() const {
+  const auto out = std::filesystem::weakly_canonical(options_.out);
+  for (const std::filesystem::path& input : Inputs()) {
+    const auto folder = std::filesystem::weakly_canonical(input).parent_path();
+    if (folder != out && folder != out / "vtu") continue;
+    throw base::InputError("--out " + options_.out.string(),
+                           fmt::format("is the folder of the input {}, which results could overwrite",
+                                       input.filename().string()),
+                           "Choose a folder that holds none of the scene's files.");
+  }
+}
 
 FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
   const auto detections = clock_.Measure("detect", [&] { return detector_.Markers(frame); });
@@ -116,9 +162,12 @@ FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
   if (!result.forces.empty()) {
     ++report_.usable_frames;
     report_.last = result;
-  } else if (report_.warnings.size() < 20) {
+  } else if (report_.frames - report_.usable_frames <= kMaxFrameWarnings) {
     report_.warnings.push_back(fmt::format("frame {}: {}: {}", result.frame,
                                            estimation::Name(result.status), result.reason));
+  }
+  if (result.degrees_of_freedom > 0) {
+    reduced_chi2_.push_back(result.chi2 / result.degrees_of_freedom);
   }
   return result;
 }
@@ -147,6 +196,8 @@ void Job::ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* 
 
 void Job::Judge() {
   const bool stopped = options_.stop != nullptr && *options_.stop;
+  const int untold = report_.frames - report_.usable_frames - kMaxFrameWarnings;
+  if (untold > 0) report_.warnings.push_back(fmt::format("{} more frames without forces", untold));
   if (!recording_.truncation().empty()) report_.warnings.push_back(recording_.truncation());
   if (stopped) report_.warnings.push_back("stopped before the end of the recording");
   if (report_.frames == 0) report_.warnings.push_back("no frame was in the range asked for");
@@ -160,10 +211,7 @@ void Job::Judge() {
 
 void Job::WriteSummaryFile() {
   RunFacts facts{scene_, options_, report_, world_, standing_.from_fiducials, frame_statuses_,
-                 marker_statuses_, index_w_, clock_.Report(), {}};
-  facts.inputs = {scene_.file, scene_.mesh.file, scene_.cameras.rig};
-  if (scene_.actuation_file) facts.inputs.push_back(*scene_.actuation_file);
-  for (const vision::Recording::Source& source : sources_) facts.inputs.push_back(source.file);
+                 marker_statuses_, index_w_, reduced_chi2_, clock_.Report(), Inputs()};
   WriteSummary(facts, options_.out / "summary.json");
 }
 
@@ -201,9 +249,9 @@ void RunOptions::Check() const {
                            "Give A:B with 0 <= A < B: frames A up to but not including B.");
   }
   if (registration_frames < 1) {
-    throw base::InputError("registration_frames", "must be 1 or more");
+    throw base::InputError("--registration-frames", "must be 1 or more");
   }
-  if (overlay_width < 64) throw base::InputError("overlay_width", "must be 64 px or more");
+  if (overlay_width < 64) throw base::InputError("--overlay-width", "must be 64 px or more");
   tracker.Check();
 }
 

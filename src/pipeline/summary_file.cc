@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "pipeline/result_tables.h"
@@ -49,6 +50,13 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
                    {"order", facts.world.mesh().order()}};
   if (std::isfinite(facts.index_w)) json["model"]["I_w_N_per_mm"] = 1e-3 * facts.index_w;
   if (facts.registration) json["registration"] = Registration(*facts.registration);
+
+  if (!facts.reduced_chi2.empty()) {
+    std::vector<double> sorted = facts.reduced_chi2;
+    std::sort(sorted.begin(), sorted.end());
+    json["chi2_per_degree_of_freedom"] = {{"median", sorted[sorted.size() / 2]},
+                                          {"max", sorted.back()}};
+  }
 
   json["seconds"] = facts.report.seconds;
   for (const StageClock::Percentiles& stage : facts.stages) {

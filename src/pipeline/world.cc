@@ -132,8 +132,9 @@ Eigen::Matrix3Xd Directions(const scene::Candidate& candidate, const Eigen::Vect
   return {};
 }
 
-double SmallestSpacing(const std::vector<scene::MarkerPoint>& points) {
-  double smallest = std::numeric_limits<double>::infinity();
+// A single marker is alone on the whole body.
+double SmallestSpacing(const std::vector<scene::MarkerPoint>& points, const mesh::TetMesh& mesh) {
+  double smallest = (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
   for (size_t i = 0; i < points.size(); ++i) {
     for (size_t j = i + 1; j < points.size(); ++j) {
       smallest = std::min(smallest, (points[i].position - points[j].position).norm());
@@ -185,7 +186,7 @@ World BuildWorld(const scene::Scene& scene) {
     world.markers.push_back(PlaceOnSurface(world.surface, body.mesh.nodes, marker.position,
                                            fmt::format("{}: markers: id {}", file, marker.id)));
   }
-  world.marker_spacing = SmallestSpacing(scene.markers.points);
+  world.marker_spacing = SmallestSpacing(scene.markers.points, body.mesh);
   world.solver = std::make_unique<fem::StaticSolver>(std::move(body), file + ": body");
   return world;
 }

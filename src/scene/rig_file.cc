@@ -30,7 +30,7 @@ Eigen::Isometry3d ReadTransform(const YamlValue& value) {
     value.Fail(fmt::format("rotation has determinant {:.7g} and is off by {:.2g}, expected "
                            "determinant 1 and at most {:g} off in any entry of R'R - I",
                            R.determinant(), defect, kMaxRotationDefect),
-               "Recalibrate with: softforce calibrate --help");
+               "Write the matrix with at least 7 digits, as the calibration gave it.");
   }
   return Eigen::Isometry3d(T);
 }

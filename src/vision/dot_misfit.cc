@@ -28,7 +28,7 @@ std::vector<EdgeMisfit> EdgeMisfits(const Patch& patch, const Levels& levels,
     const Ellipse::Place place = disc.ellipse.PlaceOf(d);
     // Blur pulls the half level of a curved edge inward.
     const double outside = place.outside + 0.5 * disc.blur * disc.blur * place.curvature;
-    const double expected = 0.5 * std::erfc(outside / (disc.blur * M_SQRT2));
+    const double expected = ExpectedCoverage(outside, disc.blur);
     const double coverage = levels.Coverage(*pixel);
     const double contrast = levels.Contrast(pixel->d);
     misfits.push_back(
@@ -69,6 +69,10 @@ Misfit Summarize(const std::vector<EdgeMisfit>& edge, double area) {
 }
 
 }  // namespace
+
+double ExpectedCoverage(double outside, double blur) {
+  return 0.5 * std::erfc(outside / (blur * M_SQRT2));
+}
 
 Misfit MeasureMisfit(const Patch& patch, const Levels& levels, const Eigen::Vector2d& patch_centre,
                      const BlurredEllipse& disc, double area) {

@@ -10,6 +10,9 @@ struct BlurredEllipse {
   double blur;
 };
 
+// The share of a pixel that a blurred disc covers, `outside` px from its sharp contour.
+double ExpectedCoverage(double outside, double blur);
+
 // How the picture of a dot differs from that of a blurred ellipse.
 struct Misfit {
   double

@@ -18,13 +18,25 @@ struct Moments {
   Eigen::Matrix2d square = Eigen::Matrix2d::Zero();  // central, px²
 };
 
-Moments MomentsOf(const Patch& patch, const Levels& levels) {
+// A pixel outside the contour that is far brighter (darker) than the dot's blur leaves it belongs
+// to a neighbour; what is expected there stands in for it.
+double OwnCoverage(const PatchPixel& pixel, const Levels& levels, double blur) {
+  constexpr double kClearlyOutside = 0.8;  // px
+  constexpr double kIntrusion = 0.15;      // of a pixel
+  const double coverage = levels.Coverage(pixel);
+  if (pixel.outside < kClearlyOutside || coverage < kIntrusion) return coverage;
+  const double expected = ExpectedCoverage(pixel.outside, blur);
+  const double noise = std::sqrt(levels.Noise(0)) / std::abs(levels.Contrast(pixel.d));
+  return coverage > expected + kIntrusion + 4 * noise ? expected : coverage;
+}
+
+Moments MomentsOf(const Patch& patch, const Levels& levels, double blur) {
   Moments m;
   m.area = patch.inside;
   m.mean = patch.inside_sum;
   m.square = patch.inside_square;
   for (const PatchPixel* pixel : patch.edge) {
-    const double coverage = levels.Coverage(*pixel);
+    const double coverage = OwnCoverage(*pixel, levels, blur);
     m.area += coverage;
     m.mean += coverage * pixel->d;
     m.square += coverage * pixel->d * pixel->d.transpose();
@@ -101,7 +113,7 @@ std::optional<Dot> MeasureDot(const cv::Mat& grey, const Ellipse& blob, const Do
     if (!levels) return std::nullopt;
     const double contrast = levels->Contrast(Eigen::Vector2d::Zero());
     if (std::abs(contrast) < 0.5 * options.min_contrast) return std::nullopt;
-    const Moments moments = MomentsOf(*patch, *levels);
+    const Moments moments = MomentsOf(*patch, *levels, now.blur);
     const std::optional<BlurredEllipse> sharper = Sharpen(now.ellipse, moments);
     if (!sharper) return std::nullopt;
     if (round < kMaxRounds && ChangeBetween(now.ellipse, sharper->ellipse) > kSettled) {

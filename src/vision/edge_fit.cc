@@ -69,8 +69,9 @@ std::optional<Edge> FitEdge(const cv::Mat& grey, const EdgeSearch& search) {
   if (!guess || guess->rise * search.rise < kMinRise) return std::nullopt;
   const std::optional<FittedStep> fit = FitStep(band, *guess, half_length, search.reach);
   if (!fit || fit->step.rise * search.rise < kMinRise) return std::nullopt;
-  Edge edge{middle,          along,          search.outward, {fit->step.a, fit->step.b},
-            fit->covariance, fit->clustering};
+  const Step& step = fit->step;
+  Edge edge{middle,          along,    search.outward,       {step.a, step.b}, fit->covariance,
+            fit->clustering, step.low, step.low + step.rise, step.blur};
   edge.covariance(0, 0) += kModelError * kModelError;
   return edge;
 }

@@ -23,6 +23,8 @@ struct Edge {
   // How many times larger the covariance is because noise is alike in neighbouring pixels, as
   // estimated from this edge alone: rough; take the mean over several edges.
   double clustering;
+  double inside, outside;  // grey levels on either side
+  double blur;             // px
 
   double OffsetVariance(const Eigen::Vector2d& p) const;  // px², of the edge's place near p
 };

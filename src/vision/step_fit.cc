@@ -17,6 +17,7 @@ struct Normal {
   Vector5d b = Vector5d::Zero();
   double square = 0;
   int used = 0;
+  std::vector<double> misfits;  // of all pixels, absolute
 };
 
 // The share of the rise that is reached at a pixel, and how the value changes with z, grey levels.
@@ -36,6 +37,7 @@ Normal Linearise(const std::vector<BandPixel>& band, const Step& step, double li
     const auto [share, slope] = ShareAndSlope(step, pixel);
     const double z = (pixel.v - step.a - step.b * pixel.u) / step.blur;
     const double misfit = pixel.value - step.low - step.rise * share;
+    normal.misfits.push_back(std::abs(misfit));
     if (std::abs(misfit) > limit) continue;
     const Vector5d J(1, share, -slope * z, -slope, -slope * pixel.u);
     normal.A.selfadjointView<Eigen::Lower>().rankUpdate(J);
@@ -103,7 +105,10 @@ std::optional<FittedStep> FitStep(const std::vector<BandPixel>& band, const Step
     if (!change.allFinite()) break;
     Apply(change, &step);
     noise2 = std::max(normal.square / (normal.used - 5), kRounding2);
-    limit = std::max(4 * std::sqrt(noise2), 3.0);
+    // From the median, which a stain over a part of the edge does not raise.
+    const auto median = normal.misfits.begin() + static_cast<std::ptrdiff_t>(band.size() / 2);
+    std::nth_element(normal.misfits.begin(), median, normal.misfits.end());
+    limit = std::max(8 * *median, 3.0);  // five standard deviations
     if (std::abs(step.a) > reach || std::abs(step.b) > kMaxTilt) break;
     if (std::abs(change(3)) + half_length * std::abs(change(4)) < kSettled) {
       return FittedStep{step, noise2 * normal.A.inverse().bottomRightCorner<2, 2>(),

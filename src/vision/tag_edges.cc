@@ -47,6 +47,25 @@ bool Intersect(const Edge& before, const Edge& after, Eigen::Vector2d* corner,
   return true;
 }
 
+// Whether all sides look alike. One that something covers looks like another edge: between other
+// levels, or drawn out.
+bool LookAlike(const std::array<Edge, 4>& sides) {
+  constexpr double kMaxLevelChange = 0.3;  // of the contrast; light may fall unevenly
+  constexpr double kMaxBlurRatio = 1.5;    // of opposite sides; motion blurs these alike
+  double inside = 0, outside = 0;
+  for (const Edge& side : sides) {
+    inside += 0.25 * side.inside;
+    outside += 0.25 * side.outside;
+  }
+  const double allowed = kMaxLevelChange * std::abs(outside - inside);
+  for (int i = 0; i < 4; ++i) {
+    if (std::abs(sides[i].inside - inside) > allowed) return false;
+    if (std::abs(sides[i].outside - outside) > allowed) return false;
+    if (sides[i].blur > kMaxBlurRatio * sides[(i + 2) % 4].blur) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<RefinedCorners> RefineCorners(const cv::Mat& grey, const Corners& corners, int cells,
@@ -58,6 +77,7 @@ std::optional<RefinedCorners> RefineCorners(const cv::Mat& grey, const Corners& 
     if (!side) return std::nullopt;
     sides[i] = *side;
   }
+  if (!LookAlike(sides)) return std::nullopt;
   double clustering = 0;
   for (const Edge& side : sides) clustering += 0.25 * side.clustering;
   RefinedCorners refined;

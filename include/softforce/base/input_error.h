@@ -10,7 +10,7 @@ namespace softforce::base {
 //
 // The text says where, what (got and expected), and what to do:
 //   calib/rig.yaml: camera "right": T_camera_rig: rotation has determinant 0.87, must be 1 within 1e-6.
-//     Recalibrate with: softforce calibrate --help
+//     Write the matrix with at least 7 digits, as the calibration gave it.
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& where, const std::string& problem, const std::string& advice = "");

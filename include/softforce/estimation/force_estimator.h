@@ -51,7 +51,14 @@ struct RigidOffset {
 };
 
 struct ForceEstimate {
-  enum class Status { kNotRun, kOk, kTooFewObservations, kUnobservable, kNotConverged };
+  enum class Status {
+    kNotRun,
+    kOk,
+    kTooFewObservations,
+    kUnobservable,
+    kNotConverged,
+    kInconsistent  // too many observations are impossible
+  };
 
   Status status = Status::kNotRun;
   std::string reason;             // for a person; empty if ok
@@ -120,6 +127,9 @@ class ForceEstimator {
                        const std::vector<fem::CableCommand>& commands) const;
   int FirstComponent(int site) const;
   BodyResponse Response(const std::vector<fem::CableCommand>& commands, ForceEstimate* estimate);
+  double LargestDisplacement(const std::vector<Observation>& observations) const;  // m, now
+  std::vector<WhitenedObservation> Whiten(const std::vector<Observation>& observations,
+                                          double displacement, ForceEstimate* estimate) const;
   OffsetPrior MakeOffsetPrior(const std::vector<WhitenedObservation>& observations,
                               double model_sd) const;
   // Fits, rejects the worst impossible observation, and fits again, until none is left.

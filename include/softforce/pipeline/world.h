@@ -26,7 +26,7 @@ struct World {
   std::vector<estimation::ForceSite> sites;  // one per candidate of the scene
   std::vector<BodyPoint> site_points;        // where the candidates are
   std::vector<BodyPoint> markers;            // centres of the scene's markers
-  double marker_spacing = 0;                 // m, the smallest distance between two markers
+  double marker_spacing = 0;                 // m, the smallest distance between two markers, at most the body's size
 
   const mesh::TetMesh& mesh() const { return solver->body().mesh; }
 };
