@@ -40,6 +40,7 @@ function(softforce_test name)
   target_link_libraries(${name}_test PRIVATE ${used_modules} ${ARG_LIBRARIES}
                                              softforce_settings GTest::gtest GTest::gmock
                                              GTest::gtest_main)
+  target_precompile_headers(${name}_test PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
   target_compile_definitions(${name}_test PRIVATE SOFTFORCE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()

@@ -5,7 +5,8 @@
 
 namespace softforce::apps {
 
-// A subcommand: its options are declared on construction, `run` does the work and returns the exit code.
+// A subcommand: its options are declared on construction, `run` does the work and returns the exit
+// code.
 struct Command {
   CLI::App* app;
   std::function<int()> run;

@@ -88,13 +88,15 @@ Command AddRun(CLI::App* program) {
   app->add_option("--registration-frames", arguments->options.registration_frames,
                   "Frames searched for base fiducials to find where the cameras stand")
       ->capture_default_str();
-  app->add_option("--common-model-error", arguments->options.tracker.estimator.common_model_error,
-                  "Model error that shifts or turns all markers together, as a share of the largest "
-                  "marker displacement (standard deviation)")
+  app->add_option(
+         "--common-model-error", arguments->options.tracker.estimator.common_model_error,
+         "Model error that shifts or turns all markers together, as a share of the largest "
+         "marker displacement (standard deviation)")
       ->capture_default_str();
-  app->add_option("--local-model-error", arguments->options.tracker.estimator.local_model_error,
-                  "Model error of each marker by itself, as a share of the largest marker displacement "
-                  "(standard deviation)")
+  app->add_option(
+         "--local-model-error", arguments->options.tracker.estimator.local_model_error,
+         "Model error of each marker by itself, as a share of the largest marker displacement "
+         "(standard deviation)")
       ->capture_default_str();
   app->add_option("--overlay-width", arguments->options.overlay_width, "Width of overlay.mp4, px")
       ->capture_default_str();

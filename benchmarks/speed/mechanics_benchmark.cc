@@ -1,5 +1,6 @@
-// Cost of the mechanics on the soft sheet of meshes/, 4- and 10-node cells, beside the yardstick: one numeric
-// factorisation of the same tangent by supernodal CHOLMOD on one thread. Compare ratios, not milliseconds.
+// Cost of the mechanics on the soft sheet of meshes/, 4- and 10-node cells, beside the yardstick:
+// one numeric factorisation of the same tangent by supernodal CHOLMOD on one thread. Compare
+// ratios, not milliseconds.
 //
 //   build/release/benchmarks/mechanics_benchmark
 #include <benchmark/benchmark.h>

@@ -13,9 +13,11 @@ namespace softforce::allocation {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kForbidden = 1e9;  // stands for "not in the gate" where the assignment wants finite costs
+constexpr double kForbidden =
+    1e9;  // stands for "not in the gate" where the assignment wants finite costs
 
-// Squared Mahalanobis distance of every pair within its gate, infinity elsewhere; features × detections.
+// Squared Mahalanobis distance of every pair within its gate, infinity elsewhere; features ×
+// detections.
 Eigen::MatrixXd GatedDistances(const std::vector<PredictedPixel>& predictions,
                                const std::vector<DetectedPixel>& detections, double gate,
                                double threshold_displacement) {
@@ -57,7 +59,8 @@ std::vector<std::vector<int>> CompetingFeatures(const Eigen::MatrixXd& distances
   return members;
 }
 
-// Costs of one group: its detections, then for each feature a column of its own that leaves it hidden.
+// Costs of one group: its detections, then for each feature a column of its own that leaves it
+// hidden.
 Eigen::MatrixXd GroupCosts(const Eigen::MatrixXd& distances, const std::vector<int>& features,
                            double hidden_price) {
   const Eigen::Index detections = distances.cols();
@@ -72,14 +75,15 @@ Eigen::MatrixXd GroupCosts(const Eigen::MatrixXd& distances, const std::vector<i
   return cost;
 }
 
-// By how much the best assignment in which row i has a different detection, or its detection goes to a
-// different feature, is dearer; in units of half χ².
+// By how much the best assignment in which row i has a different detection, or its detection goes
+// to a different feature, is dearer; in units of half χ².
 double Margin(Eigen::MatrixXd cost, const Assignment& best, int i, Eigen::Index detections) {
   const int taken = best.column_of_row[i];
   cost(i, taken) = kForbidden;
   bool contested = false;  // someone else in the gate wants, or offers, another pairing
   for (int d = 0; d < detections; ++d) contested = contested || cost(i, d) < kForbidden;
-  for (int r = 0; r < cost.rows(); ++r) contested = contested || (r != i && cost(r, taken) < kForbidden);
+  for (int r = 0; r < cost.rows(); ++r)
+    contested = contested || (r != i && cost(r, taken) < kForbidden);
   if (!contested) return kInfinity;
   return 0.5 * (AssignRows(cost).cost - best.cost);
 }

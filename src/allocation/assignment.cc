@@ -15,9 +15,11 @@ Assignment AssignRows(const Eigen::MatrixXd& cost) {
   std::vector<double> row_price(rows, 0), column_price(columns, 0);
   std::vector<int> row_of_column(columns, -1);
   for (int start = 0; start < rows; ++start) {
-    // Dijkstra from row `start` over columns, along chosen pairs, to the nearest column that is free.
+    // Dijkstra from row `start` over columns, along chosen pairs, to the nearest column that is
+    // free.
     std::vector<double> distance(columns, kInfinity);
-    std::vector<int> came_from(columns, -1);  // the column before it on the path; −1: directly from `start`
+    std::vector<int> came_from(columns,
+                               -1);  // the column before it on the path; −1: directly from `start`
     std::vector<char> settled(columns, 0);
     int row = start;
     int column = -1;

@@ -10,8 +10,8 @@ struct Assignment {
   double cost = 0;
 };
 
-// Gives each row of `cost` (rows ≤ columns, finite) a column of its own so that the sum is least: the Hungarian
-// method with potentials and shortest augmenting paths, O(rows² · columns).
+// Gives each row of `cost` (rows ≤ columns, finite) a column of its own so that the sum is least:
+// the Hungarian method with potentials and shortest augmenting paths, O(rows² · columns).
 Assignment AssignRows(const Eigen::MatrixXd& cost);
 
 }  // namespace softforce::allocation

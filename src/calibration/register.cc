@@ -11,6 +11,14 @@ constexpr double kCornerFloor = 0.03;
 // Reprojection error from which on something other than noise must be wrong. px.
 constexpr double kSuspiciousRms = 3;
 
+// Whether a picture shows a second tag of the same id: a stray print or a mirror image, and nobody
+// knows which of the two is the fiducial.
+bool SeenTwice(const std::vector<vision::Tag>& tags, const vision::Tag& tag) {
+  return std::count_if(tags.begin(), tags.end(), [&](const vision::Tag& other) {
+           return other.family == tag.family && other.id == tag.id;
+         }) > 1;
+}
+
 }  // namespace
 
 FiducialRegistration::FiducialRegistration(const camera::Rig& rig, std::vector<Fiducial> fiducials)
@@ -27,6 +35,7 @@ std::vector<std::string> FiducialRegistration::Families() const {
 void FiducialRegistration::Add(const std::vector<std::vector<vision::Tag>>& tags_of_camera) {
   for (int c = 0; c < static_cast<int>(tags_of_camera.size()); ++c) {
     for (const vision::Tag& tag : tags_of_camera[c]) {
+      if (SeenTwice(tags_of_camera[c], tag)) continue;
       for (int f = 0; f < static_cast<int>(fiducials_.size()); ++f) {
         if (fiducials_[f].id != tag.id || fiducials_[f].family != tag.family) continue;
         AddTag(c, f, tag);

@@ -12,8 +12,8 @@ struct Distorted {
   Eigen::Matrix2d jacobian;  // d point / d undistorted
 };
 
-// OpenCV's rational model: radial factor (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶), plus
-// the tangential terms p1, p2.
+// OpenCV's rational model: radial factor (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶),
+// plus the tangential terms p1, p2.
 Distorted Distort(const BrownConrady& lens, const Eigen::Vector2d& n) {
   const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = lens.distortion;
   const double x = n.x();
@@ -36,8 +36,8 @@ Distorted Distort(const BrownConrady& lens, const Eigen::Vector2d& n) {
   return d;
 }
 
-// Beyond the radius where the distorted radius stops growing the polynomial folds back, and a point far
-// outside the field would be drawn inside the picture.
+// Beyond the radius where the distorted radius stops growing the polynomial folds back, and a point
+// far outside the field would be drawn inside the picture.
 bool WithinField(const Distorted& d) {
   return d.jacobian.determinant() > 0 && d.jacobian.trace() > 0;
 }
@@ -84,9 +84,9 @@ std::optional<Eigen::Vector2d> ProjectDiscCentroid(const BrownConrady& lens,
                                                    double diameter) {
   const Eigen::Vector3d e1 = normal_camera.unitOrthogonal();
   const Eigen::Vector3d e2 = normal_camera.normalized().cross(e1);
-  // The mean of the projection over the picture's area: a rule over the disc that is exact for polynomials
-  // of degree 5 (six points on one circle and the centre), each point weighted by how much picture its
-  // surroundings cover.
+  // The mean of the projection over the picture's area: a rule over the disc that is exact for
+  // polynomials of degree 5 (six points on one circle and the centre), each point weighted by how
+  // much picture its surroundings cover.
   constexpr int kPoints = 6;
   const double ring = diameter / 2 * std::sqrt(2.0 / 3.0);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

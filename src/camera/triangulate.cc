@@ -22,8 +22,8 @@ std::vector<Ray> Rays(const Rig& rig, const std::vector<PixelObservation>& pixel
     const std::optional<Eigen::Vector2d> n = Unproject(camera.lens, seen.pixel);
     if (!n) continue;
     const Eigen::Isometry3d T_rig_camera = camera.T_camera_rig.inverse();
-    rays.push_back({T_rig_camera.translation(),
-                    (T_rig_camera.linear() * n->homogeneous()).normalized()});
+    rays.push_back(
+        {T_rig_camera.translation(), (T_rig_camera.linear() * n->homogeneous()).normalized()});
   }
   return rays;
 }

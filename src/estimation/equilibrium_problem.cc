@@ -83,15 +83,16 @@ class OffsetCost : public ceres::CostFunction {
   const OffsetPrior& prior_;
 };
 
-// Ends when a step lowers the cost, which is half of χ², by so little that it cannot matter: residuals are whitened,
-// so this is a share of the parameters' own standard deviations, whatever the size of the misfit that remains.
+// Ends when a step lowers the cost, which is half of χ², by so little that it cannot matter:
+// residuals are whitened, so this is a share of the parameters' own standard deviations, whatever
+// the size of the misfit that remains.
 class NegligibleStep : public ceres::IterationCallback {
  public:
   explicit NegligibleStep(double tolerance) : tolerance_(tolerance) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    const bool negligible = summary.iteration > 0 && summary.step_is_successful &&
-                            summary.cost_change < tolerance_;
+    const bool negligible =
+        summary.iteration > 0 && summary.step_is_successful && summary.cost_change < tolerance_;
     return negligible ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
@@ -153,7 +154,8 @@ FitResult FitParameters(const std::vector<WhitenedObservation>& observations,
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options, &problem, &summary);
 
-  result.converged = summary.IsSolutionUsable() && summary.termination_type != ceres::NO_CONVERGENCE;
+  result.converged =
+      summary.IsSolutionUsable() && summary.termination_type != ceres::NO_CONVERGENCE;
   result.iterations = static_cast<int>(summary.iterations.size());
   result.message = summary.message;
   return result;

@@ -13,7 +13,8 @@ namespace softforce::estimation {
 struct WhitenedObservation {
   int index = -1;  // among the caller's observations
   const Observation* observation = nullptr;
-  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> whitening;  // with the model's local error included
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3>
+      whitening;  // with the model's local error included
 };
 
 // The body as a function of the intensities.
@@ -28,8 +29,8 @@ struct BodyResponse {
 
 // The prior of the rigid offset.
 struct OffsetPrior {
-  Eigen::Vector3d centre;            // m, of the rotation
-  geometry::Matrix6d whitening;      // P^(-1/2)
+  Eigen::Vector3d centre;        // m, of the rotation
+  geometry::Matrix6d whitening;  // P^(-1/2)
 };
 
 // Intensities (N) followed by the offset's translation (m) and rotation (rad): what is fitted.
@@ -48,8 +49,8 @@ Eigen::Matrix3Xd ParameterJacobian(const BodyResponse& body, const OffsetPrior& 
 Eigen::Vector3d Misfit(const BodyResponse& body, const OffsetPrior& prior,
                        const Observation& observation, const Eigen::VectorXd& parameters);
 
-// Minimises the robust whitened misfit with Ceres. Each evaluation first moves the body to its equilibrium, so
-// residuals and Jacobian belong to a converged state.
+// Minimises the robust whitened misfit with Ceres. Each evaluation first moves the body to its
+// equilibrium, so residuals and Jacobian belong to a converged state.
 FitResult FitParameters(const std::vector<WhitenedObservation>& observations,
                         const Eigen::VectorXd& start, const OffsetPrior& prior,
                         const BodyResponse& body, const EstimatorOptions& options);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,8 @@
 namespace softforce::estimation {
 namespace {
 
-// The model's error is scaled by the displacement, which the fit changes: repeated until it is settled to 20 %.
+// The model's error is scaled by the displacement, which the fit changes: repeated until it is
+// settled to 20 %.
 constexpr int kMaxScaleRounds = 4;
 constexpr double kScaleTolerance = 0.2;
 
@@ -26,14 +27,20 @@ bool IsFinite(const Observation& observation) {
          observation.offset.allFinite();
 }
 
-// The whitening matrix for R + model_sd² I, where `whitening` belongs to R. Directions that the measurement says
-// nothing about (one camera) stay without a row.
-Eigen::MatrixXd WithModelError(const Eigen::MatrixXd& whitening, double model_sd) {
-  // In the rows' space: whitening = Σ^(-1/2) Q with Q orthonormal rows after an SVD.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(whitening, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd sd = svd.singularValues().cwiseInverse();
-  const Eigen::VectorXd total = (sd.array().square() + model_sd * model_sd).sqrt().inverse();
-  return total.asDiagonal() * svd.matrixV().transpose();
+// The whitening matrix for R + model_sd² I, where `whitening` belongs to R. Directions that the
+// measurement says nothing about (one camera) stay without a row.
+Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> WithModelError(
+    const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3>& whitening, double model_sd) {
+  const int rows = static_cast<int>(whitening.rows());
+  const Eigen::Matrix3d information = whitening.transpose() * whitening;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);  // ascending
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> total(rows, 3);
+  for (int i = 0; i < rows; ++i) {
+    const int axis = 3 - rows + i;
+    const double variance = 1 / axes.eigenvalues()(axis) + model_sd * model_sd;
+    total.row(i) = axes.eigenvectors().col(axis).transpose() / std::sqrt(variance);
+  }
+  return total;
 }
 
 }  // namespace
@@ -57,20 +64,26 @@ void EstimatorOptions::Check() const {
 
 const char* Name(ForceEstimate::Status status) {
   switch (status) {
-    case ForceEstimate::Status::kNotRun: return "not_run";
-    case ForceEstimate::Status::kOk: return "ok";
-    case ForceEstimate::Status::kTooFewObservations: return "too_few_markers";
-    case ForceEstimate::Status::kUnobservable: return "unobservable";
-    case ForceEstimate::Status::kNotConverged: return "not_converged";
-    case ForceEstimate::Status::kInconsistent: return "inconsistent";
+    case ForceEstimate::Status::kNotRun:
+      return "not_run";
+    case ForceEstimate::Status::kOk:
+      return "ok";
+    case ForceEstimate::Status::kTooFewObservations:
+      return "too_few_markers";
+    case ForceEstimate::Status::kUnobservable:
+      return "unobservable";
+    case ForceEstimate::Status::kNotConverged:
+      return "not_converged";
+    case ForceEstimate::Status::kInconsistent:
+      return "inconsistent";
   }
   return "";
 }
 
 std::string ForceEstimate::BriefReport() const {
   if (!ok()) return fmt::format("{}: {}", Name(status), reason);
-  return fmt::format("ok: chi2 {:.1f} of {} degrees of freedom, {} iterations, {} factorisations", chi2,
-                     degrees_of_freedom, iterations, factorisations);
+  return fmt::format("ok: chi2 {:.1f} of {} degrees of freedom, {} iterations, {} factorisations",
+                     chi2, degrees_of_freedom, iterations, factorisations);
 }
 
 ForceEstimator::ForceEstimator(fem::StaticSolver* solver, std::vector<ForceSite> sites,
@@ -78,8 +91,7 @@ ForceEstimator::ForceEstimator(fem::StaticSolver* solver, std::vector<ForceSite>
     : solver_(solver), sites_(std::move(sites)), options_(options) {
   options_.Check();
   const int num_nodes = solver_->body().mesh.num_nodes();
-  H_f_ = Eigen::MatrixXd::Zero(3 * num_nodes,
-                               FirstComponent(static_cast<int>(sites_.size())));
+  H_f_ = Eigen::MatrixXd::Zero(3 * num_nodes, FirstComponent(static_cast<int>(sites_.size())));
   for (int s = 0; s < static_cast<int>(sites_.size()); ++s) {
     const ForceSite& site = sites_[s];
     for (size_t i = 0; i < site.at.nodes.size(); ++i) {
@@ -140,7 +152,8 @@ OffsetPrior ForceEstimator::MakeOffsetPrior(const std::vector<WhitenedObservatio
   geometry::Matrix6d to_centre = geometry::Matrix6d::Identity();
   to_centre.topRightCorner<3, 3>() = -geometry::Skew(prior.centre);
   geometry::Matrix6d P = to_centre * registration_covariance_ * to_centre.transpose();
-  // The model's common error moves the points about as far by turning as by shifting. The floor keeps P regular.
+  // The model's common error moves the points about as far by turning as by shifting. The floor
+  // keeps P regular.
   const double shift = std::hypot(model_sd, kOffsetFloor);
   const double turn = shift / std::max(extent, kOffsetFloor);
   P.diagonal().head<3>().array() += shift * shift;
@@ -158,9 +171,9 @@ double ForceEstimator::LargestDisplacement(const std::vector<Observation>& obser
   return largest;
 }
 
-std::vector<WhitenedObservation> ForceEstimator::Whiten(const std::vector<Observation>& observations,
-                                                        double displacement,
-                                                        ForceEstimate* estimate) const {
+std::vector<WhitenedObservation> ForceEstimator::Whiten(
+    const std::vector<Observation>& observations, double displacement,
+    ForceEstimate* estimate) const {
   std::vector<WhitenedObservation> used;
   for (int i = 0; i < static_cast<int>(observations.size()); ++i) {
     const Observation& seen = observations[i];
@@ -181,9 +194,10 @@ ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observati
   for (int round = 0; round < kMaxScaleRounds; ++round) {
     estimate = ForceEstimate();
     estimate.rejected.assign(observations.size(), 0);
-    FitAndReject(Whiten(observations, scale, &estimate), options_.common_model_error * scale, commands,
-                 &estimate);
-    // The model's error goes with how far the body has moved, which only the fit tells: after a jump, fit again.
+    FitAndReject(Whiten(observations, scale, &estimate), options_.common_model_error * scale,
+                 commands, &estimate);
+    // The model's error goes with how far the body has moved, which only the fit tells: after a
+    // jump, fit again.
     const double fitted = LargestDisplacement(observations);
     const bool settled = std::abs(fitted - scale) <= kScaleTolerance * std::max(fitted, scale);
     scale = fitted;
@@ -235,8 +249,8 @@ void ForceEstimator::FitAndReject(std::vector<WhitenedObservation> used, double 
     }
     if (rejections >= most_rejected) {
       estimate->status = ForceEstimate::Status::kInconsistent;
-      estimate->reason =
-          fmt::format("after {} rejections there are still observations that no force explains", rejections);
+      estimate->reason = fmt::format(
+          "after {} rejections there are still observations that no force explains", rejections);
       return;
     }
     estimate->rejected[used[worst].index] = 1;
@@ -254,13 +268,11 @@ int ForceEstimator::Assess(const std::vector<WhitenedObservation>& used, const O
   for (int i = 0; i < static_cast<int>(used.size()); ++i) {
     const Observation& seen = *used[i].observation;
     const int k = static_cast<int>(used[i].whitening.rows());
-    const double chi2 =
-        (used[i].whitening * Misfit(body, prior, seen, parameters)).squaredNorm();
+    const double chi2 = (used[i].whitening * Misfit(body, prior, seen, parameters)).squaredNorm();
     J->middleRows(row, k) = used[i].whitening * ParameterJacobian(body, prior, seen);
     row += k;
     estimate->chi2 += chi2;
-    const double excess =
-        chi2 / geometry::ChiSquareQuantile(1 - options_.rejection_probability, k);
+    const double excess = chi2 / geometry::ChiSquareQuantile(1 - options_.rejection_probability, k);
     if (excess > worst_excess) {
       worst_excess = excess;
       worst = i;
@@ -275,9 +287,12 @@ void ForceEstimator::Conclude(const Eigen::MatrixXd& J, const Eigen::VectorXd& p
                               ForceEstimate* estimate) const {
   const int n = num_components();
   // What the observations say of the forces by themselves, the offset being known.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.topLeftCorner(J.rows() - 6, n));
-  const Eigen::VectorXd& sigma = svd.singularValues();
-  if (!(sigma(n - 1) > options_.min_singular_ratio * sigma(0))) {
+  const Eigen::MatrixXd J_forces = J.topLeftCorner(J.rows() - 6, n);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(J_forces.transpose() * J_forces,
+                                                                Eigen::EigenvaluesOnly);
+  const double weakest = std::sqrt(std::max(0.0, spectrum.eigenvalues()(0)));
+  const double strongest = std::sqrt(spectrum.eigenvalues()(n - 1));
+  if (!(weakest > options_.min_singular_ratio * strongest)) {
     estimate->status = ForceEstimate::Status::kUnobservable;
     estimate->reason = "the markers in view cannot tell the forces apart";
     return;
@@ -299,8 +314,8 @@ BodyResponse ForceEstimator::Response(const std::vector<fem::CableCommand>& comm
   body.move = [this, commands, estimate](const Eigen::VectorXd& intensity) {
     if (!intensity.allFinite()) return false;
     fem::Equilibrium trial = state_;
-    // A small change starts from the linear answer; Newton's method does the rest. Over a large one the linear answer
-    // stretches what should turn, and the old shape is the better start.
+    // A small change starts from the linear answer; Newton's method does the rest. Over a large one
+    // the linear answer stretches what should turn, and the old shape is the better start.
     if (compliance_u_.cols() == state_.u.cols()) {
       const Eigen::Matrix3Xd du =
           (compliance_ * (intensity - state_intensity_)).reshaped(3, trial.u.cols());
@@ -326,8 +341,7 @@ Eigen::Vector3d ForceEstimator::Force(const Eigen::VectorXd& intensity, int site
   return directions * intensity.segment(FirstComponent(site), directions.cols());
 }
 
-Eigen::Matrix3d ForceEstimator::ForceCovariance(const Eigen::MatrixXd& covariance,
-                                                int site) const {
+Eigen::Matrix3d ForceEstimator::ForceCovariance(const Eigen::MatrixXd& covariance, int site) const {
   const Eigen::Matrix3Xd& directions = sites_[site].directions;
   const int first = FirstComponent(site);
   const int n = static_cast<int>(directions.cols());

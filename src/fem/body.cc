@@ -1,7 +1,7 @@
 #include "softforce/fem/body.h"
 
-#include <Eigen/SVD>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include <numeric>
 
@@ -31,9 +31,9 @@ std::vector<int> Parts(const mesh::TetMesh& mesh) {
 bool SpanAPlane(const Eigen::Matrix3Xd& points) {
   if (points.cols() < 3) return false;
   const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  const Eigen::Vector3d extent =
-      Eigen::JacobiSVD<Eigen::Matrix3d>(centred * centred.transpose()).singularValues().cwiseSqrt();
-  return extent(1) > 1e-6 * extent(0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centred * centred.transpose(),
+                                                            Eigen::EigenvaluesOnly);
+  return axes.eigenvalues()(1) > 1e-12 * axes.eigenvalues()(2);  // squared extents, ascending
 }
 
 }  // namespace
@@ -52,10 +52,13 @@ void Body::Check(const std::string& where) const {
     const Eigen::Vector3d at_mm = 1000 * mesh.nodes.col(node);
     throw base::InputError(
         where + ": fixed",
-        fmt::format("the part of the body around ({:.1f} {:.1f} {:.1f}) mm is held at {} nodes, which do not "
-                    "keep it from drifting or turning; at least 3 nodes that are not in line are needed",
-                    at_mm.x(), at_mm.y(), at_mm.z(), held.size()),
-        "Check the boxes and groups under 'fixed' against the mesh: its unit, and where it stands.");
+        fmt::format(
+            "the part of the body around ({:.1f} {:.1f} {:.1f}) mm is held at {} nodes, which do "
+            "not "
+            "keep it from drifting or turning; at least 3 nodes that are not in line are needed",
+            at_mm.x(), at_mm.y(), at_mm.z(), held.size()),
+        "Check the boxes and groups under 'fixed' against the mesh: its unit, and where it "
+        "stands.");
   }
 }
 

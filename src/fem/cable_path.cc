@@ -17,8 +17,8 @@ std::vector<Segment> Segments(const Cable& cable, const Eigen::Matrix3Xd& x) {
   for (size_t p = 0; p < cable.points.size(); ++p) {
     const bool last = p + 1 == cable.points.size();
     const Eigen::Vector3d end = last ? cable.guide : cable.points[p + 1].Apply(x);
-    segments.push_back({&cable.points[p], last ? nullptr : &cable.points[p + 1],
-                        end - cable.points[p].Apply(x)});
+    segments.push_back(
+        {&cable.points[p], last ? nullptr : &cable.points[p + 1], end - cable.points[p].Apply(x)});
   }
   return segments;
 }

@@ -7,10 +7,10 @@
 
 namespace softforce::fem {
 
-// Supernodal Cholesky factorisation of symmetric positive definite matrices of one pattern, by CHOLMOD. The
-// pattern is analysed once (the better of AMD and METIS). Runs on one thread whatever the environment says:
-// Debian's CHOLMOD 5.12 asks OpenMP for four threads by itself, which on matrices of this size costs a factor
-// of three to six.
+// Supernodal Cholesky factorisation of symmetric positive definite matrices of one pattern, by
+// CHOLMOD. The pattern is analysed once (the better of AMD and METIS). Runs on one thread whatever
+// the environment says: Debian's CHOLMOD 5.12 asks OpenMP for four threads by itself, which on
+// matrices of this size costs a factor of three to six.
 class Cholesky {
  public:
   explicit Cholesky(const LowerBlocks& pattern);

@@ -6,7 +6,8 @@
 namespace softforce::fem {
 namespace {
 
-// Barycentric coordinates of the four-point rule, exact for quadratic polynomials (weights 1/4 each).
+// Barycentric coordinates of the four-point rule, exact for quadratic polynomials (weights 1/4
+// each).
 constexpr double kNear = 0.58541019662496852;
 constexpr double kFar = 0.13819660112501052;
 

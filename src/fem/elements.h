@@ -8,8 +8,8 @@
 
 namespace softforce::fem {
 
-// Gradients of the shape functions at the integration points of every cell, in the body at rest: one point
-// for 4-node cells, the four-point rule of degree 2 for 10-node cells.
+// Gradients of the shape functions at the integration points of every cell, in the body at rest:
+// one point for 4-node cells, the four-point rule of degree 2 for 10-node cells.
 class Elements {
  public:
   explicit Elements(const Body& body);
@@ -18,8 +18,9 @@ class Elements {
   int nodes_per_element() const { return static_cast<int>(nodes_.rows()); }
   int node(int element, int local) const { return nodes_(local, element); }
 
-  // Sum of the elastic energies (J) and, added to `forces` (3×N, N), the internal forces. Returns infinity,
-  // with `forces` unfinished, if the law has no value at some point: the cell is turned inside out.
+  // Sum of the elastic energies (J) and, added to `forces` (3×N, N), the internal forces. Returns
+  // infinity, with `forces` unfinished, if the law has no value at some point: the cell is turned
+  // inside out.
   double EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const;
 
   // The stiffness of one cell, symmetric, 3n×3n with index 3·local + component, N/m.
@@ -43,8 +44,8 @@ class Elements {
   }
 
   Eigen::MatrixXi nodes_;
-  std::vector<double> gradients_;  // [element][point][local][xyz], 1/m
-  std::vector<double> weights_;    // [element][point], m³
+  std::vector<double> gradients_;      // [element][point][local][xyz], 1/m
+  std::vector<double> weights_;        // [element][point], m³
   std::vector<Material> material_of_;  // per element
 };
 

@@ -1,11 +1,11 @@
 #include "softforce/fem/material.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <array>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "softforce/base/input_error.h"
 #include "softforce/geometry/rigid.h"
@@ -49,8 +49,8 @@ Matrix9d CofactorDerivative(const Eigen::Matrix3d& F) {
   return D;
 }
 
-// |F − R|² and (tr(RᵀF) − 3)² through the singular values of F; the rotation's derivative follows from
-// RᵀdR = skew, with (tr(S) I − S) ω = axial(RᵀdF − dFᵀR).
+// |F − R|² and (tr(RᵀF) − 3)² through the singular values of F; the rotation's derivative follows
+// from RᵀdR = skew, with (tr(S) I − S) ω = axial(RᵀdF − dFᵀR).
 MaterialResponse Corotational(double mu, double lambda, const Eigen::Matrix3d& F,
                               bool with_elasticity) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -84,8 +84,8 @@ MaterialResponse Corotational(double mu, double lambda, const Eigen::Matrix3d& F
     }
   }
   const Vector9d r = Stacked(R);
-  response.dPdF = 2 * mu * Matrix9d::Identity() + (lambda * stretch - 2 * mu) * dR +
-                  lambda * r * r.transpose();
+  response.dPdF =
+      2 * mu * Matrix9d::Identity() + (lambda * stretch - 2 * mu) * dR + lambda * r * r.transpose();
   return response;
 }
 

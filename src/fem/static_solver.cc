@@ -37,10 +37,10 @@ void StaticSolverOptions::Check() const {
 }
 
 std::string SolveSummary::BriefReport() const {
-  return fmt::format("{} after {} iterations, {} factorisations, {} load steps; last step {:.2e} m{}",
-                     ok() ? "converged" : "not converged", iterations, factorisations, load_steps,
-                     last_step,
-                     ok() ? "" : fmt::format("; reached {:.0f} % of the load", 100 * reached_share));
+  return fmt::format(
+      "{} after {} iterations, {} factorisations, {} load steps; last step {:.2e} m{}",
+      ok() ? "converged" : "not converged", iterations, factorisations, load_steps, last_step,
+      ok() ? "" : fmt::format("; reached {:.0f} % of the load", 100 * reached_share));
 }
 
 struct StaticSolver::State {
@@ -53,8 +53,7 @@ struct StaticSolver::State {
     options.Check();
     diagonal = (body.mesh.nodes.rowwise().maxCoeff() - body.mesh.nodes.rowwise().minCoeff()).norm();
     stiffness = elements.ShearModulusTimesVolume();
-    weight = body.density * body.gravity *
-             elements.NodalVolumes(body.mesh.num_nodes()).transpose();
+    weight = body.density * body.gravity * elements.NodalVolumes(body.mesh.num_nodes()).transpose();
     rest_length.resize(num_cables());
     for (int c = 0; c < num_cables(); ++c) {
       rest_length(c) = CableLength(body.cables[c], body.mesh.nodes);
@@ -157,8 +156,8 @@ double StaticSolver::State::Merit(const Balance& balance, const Eigen::Matrix3Xd
   return balance.energy + step.tension.dot(gap) + 0.5 * step.penalty.dot(gap.cwiseAbs2());
 }
 
-// K du = −unbalanced − Σ t G with G·du = −gap for each cable held at a length; a cable whose tension would
-// come out negative is slack instead.
+// K du = −unbalanced − Σ t G with G·du = −gap for each cable held at a length; a cable whose
+// tension would come out negative is slack instead.
 bool StaticSolver::State::MakeStep(const LoadCase& load, const Equilibrium& at,
                                    const Eigen::Matrix3Xd& unbalanced, Step* step) const {
   const int n = num_cables();
@@ -218,14 +217,15 @@ bool StaticSolver::State::MakeStep(const LoadCase& load, const Equilibrium& at,
   step->slope = residual.dot(step->du.reshaped());
   for (int c = 0; c < n; ++c) {
     if (step->penalty(c) == 0) continue;
-    step->slope += step->penalty(c) * (length(c) - step->target(c)) * G.col(c).dot(step->du.reshaped());
+    step->slope +=
+        step->penalty(c) * (length(c) - step->target(c)) * G.col(c).dot(step->du.reshaped());
   }
   return std::isfinite(step->slope) && step->du.allFinite();
 }
 
-// The share of the step at which the merit has fallen enough: 1, 1/2, … , or 0 if it never does. Close to the
-// solution the merit's change drowns in rounding, and the whole step is right. `balance` is that of the start, and
-// becomes that of the place found.
+// The share of the step at which the merit has fallen enough: 1, 1/2, … , or 0 if it never does.
+// Close to the solution the merit's change drowns in rounding, and the whole step is right.
+// `balance` is that of the start, and becomes that of the place found.
 double StaticSolver::State::SearchAlong(const LoadCase& load, const Equilibrium& at,
                                         const Step& step, Balance* balance) const {
   const double start = Merit(*balance, at.u, step);
@@ -299,8 +299,8 @@ LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
   load.forces = (1 - share) * from.load.forces + share * to.forces;
   for (size_t c = 0; c < load.commands.size(); ++c) {
     const int i = static_cast<int>(c);
-    const double start = to.commands[c].input == CableInput::kTension ? from.tension(i)
-                                                                      : from.shortening(i);
+    const double start =
+        to.commands[c].input == CableInput::kTension ? from.tension(i) : from.shortening(i);
     load.commands[c].value = (1 - share) * start + share * to.commands[c].value;
   }
   return load;

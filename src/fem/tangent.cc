@@ -125,8 +125,9 @@ void TangentAssembler::Assemble(const Elements& elements, const Eigen::Matrix3Xd
   const Eigen::Matrix3Xd x = body_.mesh.nodes + u;
   for (size_t c = 0; c < body_.cables.size(); ++c) {
     if (tension(static_cast<int>(c)) == 0) continue;
-    ForEachCableStiffness(body_.cables[c], x, tension(static_cast<int>(c)),
-                          [&](int i, int j, const Eigen::Matrix3d& K_ij) { AddSymmetric(i, j, K_ij); });
+    ForEachCableStiffness(
+        body_.cables[c], x, tension(static_cast<int>(c)),
+        [&](int i, int j, const Eigen::Matrix3d& K_ij) { AddSymmetric(i, j, K_ij); });
   }
 }
 

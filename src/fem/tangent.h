@@ -9,8 +9,8 @@
 
 namespace softforce::fem {
 
-// The lower triangle of the tangent on the free nodes, as compressed columns of scalars made of 3×3 blocks.
-// The pattern is fixed for a body: the cells, and the nodes that a cable ties together.
+// The lower triangle of the tangent on the free nodes, as compressed columns of scalars made of 3×3
+// blocks. The pattern is fixed for a body: the cells, and the nodes that a cable ties together.
 struct LowerBlocks {
   std::vector<int> column_start;  // per scalar column
   std::vector<int> row;           // scalar rows, ascending in each column
@@ -28,7 +28,8 @@ class TangentAssembler {
   int free_index(int node) const { return free_index_[node]; }
   int num_free_nodes() const { return num_free_; }
 
-  // K at displacement u, with the stiffness that the tensions add by the cables' changes of direction.
+  // K at displacement u, with the stiffness that the tensions add by the cables' changes of
+  // direction.
   void Assemble(const Elements& elements, const Eigen::Matrix3Xd& u,
                 const Eigen::VectorXd& tension);
   const LowerBlocks& matrix() const { return matrix_; }
@@ -44,8 +45,9 @@ class TangentAssembler {
   const Body& body_;
   std::vector<int> free_index_;
   int num_free_ = 0;
-  std::vector<int> block_start_, block_row_;  // block pattern: columns of free nodes, rows ascending
-  std::vector<int> cell_positions_;           // per cell and pair i ≤ j of its nodes; −1: a fixed node
+  std::vector<int> block_start_,
+      block_row_;                    // block pattern: columns of free nodes, rows ascending
+  std::vector<int> cell_positions_;  // per cell and pair i ≤ j of its nodes; −1: a fixed node
   LowerBlocks matrix_;
 };
 

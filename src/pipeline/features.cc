@@ -34,8 +34,7 @@ void MarkerFeatures::PlaceTags(const camera::Rig& rig, const Eigen::Isometry3d& 
     if (placed_[m]) continue;
     std::array<std::vector<camera::PixelObservation>, 4> pixels;
     for (int c = 0; c < static_cast<int>(cameras.size()); ++c) {
-      const vision::Tag* tag =
-          FindTag(cameras[c], scene_.markers, scene_.markers.points[m].id);
+      const vision::Tag* tag = FindTag(cameras[c], scene_.markers, scene_.markers.points[m].id);
       if (tag == nullptr) continue;
       for (int i = 0; i < 4; ++i) {
         pixels[i].push_back({c, tag->corners[i], tag->corner_covariances[i]});
@@ -59,20 +58,17 @@ void MarkerFeatures::PlaceTag(int marker, const Eigen::Vector3d& up_robot,
   const Eigen::Vector3d normal = mesh::Normal(world_.surface, X, centre.at);
   const Eigen::Vector3d normal_now = mesh::Normal(world_.surface, X + u, centre.at);
   // Back to the body at rest by the smallest rotation that undoes the tilt of the surface.
-  const Eigen::Vector3d turned =
-      Eigen::Quaterniond::FromTwoVectors(normal_now, normal) * up_robot;
+  const Eigen::Vector3d turned = Eigen::Quaterniond::FromTwoVectors(normal_now, normal) * up_robot;
   const Eigen::Vector3d up = (turned - turned.dot(normal) * normal).normalized();
   const Eigen::Vector3d right = up.cross(normal);
   const double half = scene_.markers.size / 2;
   const std::array<Eigen::Vector2d, 4> square{{{-1, 1}, {1, 1}, {1, -1}, {-1, -1}}};
   const Eigen::Vector3d middle = scene_.markers.points[marker].position;
   for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d place =
-        middle + half * (square[i].x() * right + square[i].y() * up);
+    const Eigen::Vector3d place = middle + half * (square[i].x() * right + square[i].y() * up);
     const mesh::SurfaceProjection on = mesh::ClosestSurfacePoint(world_.surface, X, place);
-    features_.push_back({marker, i,
-                         {on.at, mesh::ShapeFunctions(world_.surface, on.at), place - on.position},
-                         0});
+    features_.push_back(
+        {marker, i, {on.at, mesh::ShapeFunctions(world_.surface, on.at), place - on.position}, 0});
   }
   placed_[marker] = 1;
 }

@@ -13,10 +13,14 @@ double ForceResult::NormSd() const {
 
 const char* Name(MarkerStatus status) {
   switch (status) {
-    case MarkerStatus::kSeen: return "seen";
-    case MarkerStatus::kOneCamera: return "one_camera";
-    case MarkerStatus::kHidden: return "hidden";
-    case MarkerStatus::kRejected: return "rejected";
+    case MarkerStatus::kSeen:
+      return "seen";
+    case MarkerStatus::kOneCamera:
+      return "one_camera";
+    case MarkerStatus::kHidden:
+      return "hidden";
+    case MarkerStatus::kRejected:
+      return "rejected";
   }
   return "";
 }

@@ -10,10 +10,10 @@ namespace {
 
 // How one camera should see a feature.
 struct View {
-  bool expected = false;             // in the picture, and turned towards the camera
-  Eigen::Vector2d pixel;             // of the detection: the centroid of a dot's picture
-  Eigen::Vector2d centroid_shift;    // px; centroid − projection of the centre
-  Eigen::Matrix<double, 2, 3> J;     // d pixel / d p_robot, px/m
+  bool expected = false;           // in the picture, and turned towards the camera
+  Eigen::Vector2d pixel;           // of the detection: the centroid of a dot's picture
+  Eigen::Vector2d centroid_shift;  // px; centroid − projection of the centre
+  Eigen::Matrix<double, 2, 3> J;   // d pixel / d p_robot, px/m
   double diameter_px = 0;
 };
 
@@ -46,8 +46,8 @@ Eigen::Matrix2d WithFloor(const Eigen::Matrix2d& covariance, double floor_px) {
 }
 
 // The dots of a size that some expected marker could have.
-std::vector<int> DotsOfRightSize(const std::vector<vision::Dot>& dots, const std::vector<View>& views,
-                                 double tolerance) {
+std::vector<int> DotsOfRightSize(const std::vector<vision::Dot>& dots,
+                                 const std::vector<View>& views, double tolerance) {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = 0;
   for (const View& view : views) {

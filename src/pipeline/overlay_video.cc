@@ -11,16 +11,20 @@ constexpr double kOverlayRate = 30;  // frames/s at which overlay.mp4 plays
 
 render::MarkerMark MarkOf(MarkerStatus status) {
   switch (status) {
-    case MarkerStatus::kSeen: return render::MarkerMark::kSeen;
-    case MarkerStatus::kOneCamera: return render::MarkerMark::kOneCamera;
-    case MarkerStatus::kHidden: return render::MarkerMark::kHidden;
-    case MarkerStatus::kRejected: return render::MarkerMark::kRejected;
+    case MarkerStatus::kSeen:
+      return render::MarkerMark::kSeen;
+    case MarkerStatus::kOneCamera:
+      return render::MarkerMark::kOneCamera;
+    case MarkerStatus::kHidden:
+      return render::MarkerMark::kHidden;
+    case MarkerStatus::kRejected:
+      return render::MarkerMark::kRejected;
   }
   return render::MarkerMark::kHidden;
 }
 
-render::OverlayScene Content(const scene::Scene& scene, const World& world, const FrameResult& result,
-                             const Eigen::Matrix3Xd& x) {
+render::OverlayScene Content(const scene::Scene& scene, const World& world,
+                             const FrameResult& result, const Eigen::Matrix3Xd& x) {
   render::OverlayScene content;
   content.surface = &world.surface;
   content.x = &x;
@@ -41,8 +45,9 @@ render::OverlayScene Content(const scene::Scene& scene, const World& world, cons
     path.path.push_back(cable.guide);
     content.cables.push_back(path);
   }
-  content.caption = {fmt::format("{}   frame {}   {:.3f} s", scene.name, result.frame, result.time_s),
-                     fmt::format("{} of {} markers in view", in_view, result.markers.size())};
+  content.caption = {
+      fmt::format("{}   frame {}   {:.3f} s", scene.name, result.frame, result.time_s),
+      fmt::format("{} of {} markers in view", in_view, result.markers.size())};
   if (result.forces.empty()) {
     content.caption.push_back(fmt::format("no forces: {}", estimation::Name(result.status)));
   }

@@ -54,8 +54,8 @@ std::vector<std::vector<vision::Tag>> Detector::Fiducials(const vision::FrameSet
   return cameras;
 }
 
-Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector, int frames,
-                 vision::Recording* recording) {
+Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
+                 int frames, vision::Recording* recording) {
   if (scene.cameras.fiducials.empty()) {
     if (rig.T_rig_robot) return {*rig.T_rig_robot, geometry::Matrix6d::Zero(), std::nullopt};
     throw base::InputError(
@@ -73,19 +73,21 @@ Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detect
   recording->Rewind();
   const vision::RigPose pose = registration.Solve();
   if (!pose.ok()) {
-    throw base::InputError(
-        scene.file.string() + ": cameras: fiducials",
-        fmt::format("the rig's place cannot be found from them: {} corners were seen in the first {} frames",
-                    pose.num_points, frames),
-        "At least one fiducial must be sharp and wholly in view of a camera; check family, id and corners.");
+    throw base::InputError(scene.file.string() + ": cameras: fiducials",
+                           fmt::format("the rig's place cannot be found from them: {} corners were "
+                                       "seen in the first {} frames",
+                                       pose.num_points, frames),
+                           "At least one fiducial must be sharp and wholly in view of a camera; "
+                           "check family, id and corners.");
   }
   if (pose.rms_px > kMaxRegistrationRms) {
-    throw base::InputError(
-        scene.file.string() + ": cameras: fiducials",
-        fmt::format("their corners are seen {:.1f} px off where rig and fiducials put them; at most {} px can be "
-                    "explained by noise",
-                    pose.rms_px, kMaxRegistrationRms),
-        "Check the corners' places and order (TL TR BR BL), and that rig.yaml belongs to these cameras.");
+    throw base::InputError(scene.file.string() + ": cameras: fiducials",
+                           fmt::format("their corners are seen {:.1f} px off where rig and "
+                                       "fiducials put them; at most {} px can be "
+                                       "explained by noise",
+                                       pose.rms_px, kMaxRegistrationRms),
+                           "Check the corners' places and order (TL TR BR BL), and that rig.yaml "
+                           "belongs to these cameras.");
   }
   return {pose.T_rig_robot, pose.covariance, pose};
 }

@@ -21,14 +21,15 @@ class Detector {
   std::map<std::string, vision::TagDetector> detectors_;  // by family
 };
 
-// Where the rig stands: from the base fiducials in the first frames of the recording, which is rewound after; or,
-// for a scene without fiducials, as the rig's file says. Throws InputError if neither works.
+// Where the rig stands: from the base fiducials in the first frames of the recording, which is
+// rewound after; or, for a scene without fiducials, as the rig's file says. Throws InputError if
+// neither works.
 struct Standing {
   Eigen::Isometry3d T_rig_robot;
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // see vision::RigPose
   std::optional<vision::RigPose> from_fiducials;
 };
-Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector, int frames,
-                 vision::Recording* recording);
+Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
+                 int frames, vision::Recording* recording);
 
 }  // namespace softforce::pipeline

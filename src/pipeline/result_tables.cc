@@ -28,8 +28,9 @@ std::string Newtons(const Eigen::Vector3d& f) {
 PendingTable::PendingTable(const std::filesystem::path& path, const std::string& header)
     : file_(path), stream_(file_.temporary()) {
   if (!stream_) {
-    throw base::InputError(path.string(), "cannot be written",
-                           "Choose another folder with --out, or check its permissions and the disk's space.");
+    throw base::InputError(
+        path.string(), "cannot be written",
+        "Choose another folder with --out, or check its permissions and the disk's space.");
   }
   if (!header.empty()) stream_ << header << '\n';
 }
@@ -45,7 +46,8 @@ void PendingTable::Commit() {
 
 ResultTables::ResultTables(const std::filesystem::path& folder, bool with_actuation)
     : forces_(folder / "forces.csv",
-              "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_N,fy_N,"
+              "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_"
+              "N,fy_N,"
               "fz_N,norm_N,sd_x_N,sd_y_N,sd_z_N,sd_location_mm"),
       markers_(folder / "markers.csv",
                "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,"
@@ -58,7 +60,8 @@ ResultTables::ResultTables(const std::filesystem::path& folder, bool with_actuat
 void ResultTables::Add(const FrameResult& result) {
   const std::string moment = fmt::format("{},{:.6f}", result.frame, result.time_s);
   if (result.forces.empty()) {
-    fmt::print(forces_.stream(), "{},,,{},,,,,,,,,,,,,,\n", moment, estimation::Name(result.status));
+    fmt::print(forces_.stream(), "{},,,{},,,,,,,,,,,,,,\n", moment,
+               estimation::Name(result.status));
   }
   for (size_t i = 0; i < result.forces.size(); ++i) {
     const ForceResult& force = result.forces[i];

@@ -1,8 +1,10 @@
 #include "softforce/pipeline/run.h"
 
 #include <fmt/format.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
 
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -22,7 +24,8 @@ namespace {
 
 constexpr int kMaxFrameWarnings = 20;  // about single frames; the rest is counted
 
-std::vector<vision::Recording::Source> Sources(const scene::Scene& scene, const RunOptions& options) {
+std::vector<vision::Recording::Source> Sources(const scene::Scene& scene,
+                                               const RunOptions& options) {
   std::map<std::string, std::string> sources = scene.cameras.sources;
   for (const auto& [camera, source] : options.sources) sources[camera] = source;
   std::vector<vision::Recording::Source> files;
@@ -31,43 +34,48 @@ std::vector<vision::Recording::Source> Sources(const scene::Scene& scene, const 
 }
 
 // Live cameras are named by a URL, a device or a GStreamer pipeline.
-void RefuseLiveSources(const scene::Scene& scene, const std::vector<vision::Recording::Source>& sources) {
+void RefuseLiveSources(const scene::Scene& scene,
+                       const std::vector<vision::Recording::Source>& sources) {
   for (const vision::Recording::Source& source : sources) {
     const std::string name = source.file.string();
     if (name.find("://") == std::string::npos && name.find('!') == std::string::npos &&
         name.rfind("/dev/", 0) != 0) {
       continue;
     }
-    throw base::InputError(scene.file.string() + ": cameras: sources: " + source.camera,
-                           fmt::format("\"{}\" is a live source, but this version reads files only", name),
-                           "Record the cameras to files first.");
+    throw base::InputError(
+        scene.file.string() + ": cameras: sources: " + source.camera,
+        fmt::format("\"{}\" is a live source, but this version reads files only", name),
+        "Record the cameras to files first.");
   }
 }
 
 void RefuseUnknownLocations(const scene::Scene& scene) {
   if (scene.forces.known_locations) return;
-  throw base::InputError(scene.file.string() + ": forces: known",
-                         "is false, but this version estimates forces at known places only",
-                         "Set 'known: true' and list the places where the forces act as candidates.");
+  throw base::InputError(
+      scene.file.string() + ": forces: known",
+      "is false, but this version estimates forces at known places only",
+      "Set 'known: true' and list the places where the forces act as candidates.");
 }
 
-// I_w = ‖W_ef⁺‖₁ of the paper (VI.A) for the body at rest: how much an error of the markers can be amplified.
+// I_w = ‖W_ef⁺‖₁ of the paper (VI.A) for the body at rest: how much an error of the markers can be
+// amplified.
 double IndexW(const World& world) {
   estimation::ForceEstimator estimator(world.solver.get(), world.sites);
   Eigen::MatrixXd W(3 * world.markers.size(), estimator.num_components());
   for (size_t m = 0; m < world.markers.size(); ++m) {
-    W.middleRows<3>(3 * static_cast<Eigen::Index>(m)) = estimator.Compliance(world.markers[m].weights);
+    W.middleRows<3>(3 * static_cast<Eigen::Index>(m)) =
+        estimator.Compliance(world.markers[m].weights);
   }
   if (W.rows() < W.cols()) return NAN;
   const Eigen::MatrixXd inverse = W.completeOrthogonalDecomposition().pseudoInverse();
   return inverse.cwiseAbs().colwise().sum().maxCoeff();
 }
 
-// Removes what an earlier run left under the same names, so that a run that ends early cannot be mistaken for a
-// complete one.
+// Removes what an earlier run left under the same names, so that a run that ends early cannot be
+// mistaken for a complete one.
 void ClearOldResults(const std::filesystem::path& out) {
-  for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json", "overlay.mp4",
-                           "results.pvd"}) {
+  for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json",
+                           "overlay.mp4", "results.pvd"}) {
     std::filesystem::remove(out / name);
   }
   std::filesystem::remove_all(out / "vtu");
@@ -107,6 +115,7 @@ class Job {
   void ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series);
   FrameResult ProcessFrame(const vision::FrameSet& frame);
   void Judge();
+  void LogSetUp() const;
   void WriteSummaryFile();
 
   const RunOptions& options_;
@@ -145,10 +154,11 @@ void Job::RefuseToOverwriteInputs() const {
   for (const std::filesystem::path& input : Inputs()) {
     const auto folder = std::filesystem::weakly_canonical(input).parent_path();
     if (folder != out && folder != out / "vtu") continue;
-    throw base::InputError("--out " + options_.out.string(),
-                           fmt::format("is the folder of the input {}, which results could overwrite",
-                                       input.filename().string()),
-                           "Choose a folder that holds none of the scene's files.");
+    throw base::InputError(
+        "--out " + options_.out.string(),
+        fmt::format("is the folder of the input {}, which results could overwrite",
+                    input.filename().string()),
+        "Choose a folder that holds none of the scene's files.");
   }
 }
 
@@ -210,14 +220,30 @@ void Job::Judge() {
 }
 
 void Job::WriteSummaryFile() {
-  RunFacts facts{scene_, options_, report_, world_, standing_.from_fiducials, frame_statuses_,
-                 marker_statuses_, index_w_, reduced_chi2_, clock_.Report(), Inputs()};
+  RunFacts facts{
+      scene_,          options_,         report_,  world_,        standing_.from_fiducials,
+      frame_statuses_, marker_statuses_, index_w_, reduced_chi2_, clock_.Report(),
+      Inputs()};
   WriteSummary(facts, options_.out / "summary.json");
+}
+
+void Job::LogSetUp() const {
+  if (!options_.show_progress) return;
+  spdlog::logger log("softforce", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  log.set_pattern("%n: %v");
+  log.info("{}: {} cells of order {}, {} nodes; {} markers, {} forces, {} cables", scene_.name,
+           world_.mesh().num_elements(), world_.mesh().order(), world_.mesh().num_nodes(),
+           world_.markers.size(), world_.sites.size(), scene_.actuators.size());
+  if (!standing_.from_fiducials) return;
+  const vision::RigPose& pose = *standing_.from_fiducials;
+  log.info("the rig stands still: {} corners of fiducials fit to {:.3f} px", pose.num_points,
+           pose.rms_px);
 }
 
 RunReport Job::Finish() {
   const auto start = std::chrono::steady_clock::now();
   MakeFolder(options_.out);
+  LogSetUp();
   ClearOldResults(options_.out);
   ResultTables tables(options_.out, !scene_.actuators.empty());
   std::optional<OverlayVideo> overlay;
@@ -231,8 +257,7 @@ RunReport Job::Finish() {
   ProcessFrames(&tables, overlay ? &*overlay : nullptr, series ? &*series : nullptr);
 
   report_.out = options_.out;
-  report_.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Judge();
   tables.Commit();
   if (overlay) overlay->Commit();
@@ -245,7 +270,8 @@ RunReport Job::Finish() {
 
 void RunOptions::Check() const {
   if (first_frame < 0 || end_frame <= first_frame) {
-    throw base::InputError("--frames", fmt::format("{}:{} is no range of frames", first_frame, end_frame),
+    throw base::InputError("--frames",
+                           fmt::format("{}:{} is no range of frames", first_frame, end_frame),
                            "Give A:B with 0 <= A < B: frames A up to but not including B.");
   }
   if (registration_frames < 1) {
@@ -275,9 +301,10 @@ std::string RunReport::FullReport() const {
                         "force, N", "norm, N", "sd, N");
     for (const ForceResult& force : last->forces) {
       const Eigen::Vector3d p = 1e3 * force.position;
-      text += fmt::format("  {:>9}  {:7.2f} {:7.2f} {:7.2f}  {:8.4f} {:8.4f} {:9.4f}  {:9.4f}  {:9.4f}\n",
-                          force.candidate, p.x(), p.y(), p.z(), force.force.x(), force.force.y(),
-                          force.force.z(), force.force.norm(), force.NormSd());
+      text += fmt::format(
+          "  {:>9}  {:7.2f} {:7.2f} {:7.2f}  {:8.4f} {:8.4f} {:9.4f}  {:9.4f}  {:9.4f}\n",
+          force.candidate, p.x(), p.y(), p.z(), force.force.x(), force.force.y(), force.force.z(),
+          force.force.norm(), force.NormSd());
     }
   }
   return text + "\nResults: " + out.string() + "\n";

@@ -16,7 +16,7 @@ struct RunFacts {
   const World& world;
   std::optional<vision::RigPose> registration;
   std::map<std::string, int> frame_statuses, marker_statuses;
-  double index_w = NAN;  // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
+  double index_w = NAN;              // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
   std::vector<double> reduced_chi2;  // of each frame: whitened squared misfit per degree of freedom
   std::vector<StageClock::Percentiles> stages;
   std::vector<std::filesystem::path> inputs;

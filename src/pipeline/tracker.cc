@@ -32,7 +32,8 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
       intensity_covariance_(
           Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
   options_.Check();
-  // From a twist on the rig's side of T_rig_robot to one on the robot's side: the adjoint of its inverse.
+  // From a twist on the rig's side of T_rig_robot to one on the robot's side: the adjoint of its
+  // inverse.
   const Eigen::Matrix3d R = T_rig_robot_.linear().transpose();
   const Eigen::Vector3d t = -(R * T_rig_robot_.translation());
   geometry::Matrix6d to_robot = geometry::Matrix6d::Zero();
@@ -48,8 +49,10 @@ std::vector<PredictedFeature> Tracker::Predict() {
   std::vector<Eigen::Matrix3Xd> compliance;
   Eigen::VectorXd largest = Eigen::VectorXd::Zero(estimator_.num_components());  // m/N
   for (const Feature& feature : features_.features()) {
-    predicted.push_back({feature.point.weights.Apply(x) + feature.point.offset, {},
-                         mesh::Normal(world_.surface, x, feature.point.at), feature.diameter});
+    predicted.push_back({feature.point.weights.Apply(x) + feature.point.offset,
+                         {},
+                         mesh::Normal(world_.surface, x, feature.point.at),
+                         feature.diameter});
     compliance.push_back(estimator_.Compliance(feature.point.weights));
     largest = largest.cwiseMax(compliance.back().colwise().norm().transpose());
   }
@@ -121,15 +124,14 @@ std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& 
   std::vector<ForceResult> forces;
   for (int s = 0; s < static_cast<int>(world_.sites.size()); ++s) {
     forces.push_back({scene_.forces.candidates[s].id, world_.sites[s].at.Apply(x),
-                      scene_.forces.candidates[s].position,
-                      estimator_.Force(estimate.intensity, s),
+                      scene_.forces.candidates[s].position, estimator_.Force(estimate.intensity, s),
                       estimator_.ForceCovariance(estimate.covariance, s)});
   }
   return forces;
 }
 
-// A dot is its only feature. A tag is measured by its corners: its centre is where the model has it, moved by the
-// mean misfit of the corners, since the surface between them is curved.
+// A dot is its only feature. A tag is measured by its corners: its centre is where the model has
+// it, moved by the mean misfit of the corners, since the surface between them is curved.
 std::vector<MarkerResult> Tracker::MarkerResults(
     const std::vector<FeatureObservation>& observations, const std::vector<char>& rejected) const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;

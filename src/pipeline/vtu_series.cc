@@ -15,8 +15,7 @@ void VtuSeries::Add(int frame, double time_s, const mesh::TetMesh& mesh,
                     const Eigen::Matrix3Xd& u) {
   const std::string name = fmt::format("vtu/frame_{:05d}.vtu", frame);
   mesh::WriteVtu(folder_ / name, mesh, {{"displacement_m", u}});
-  entries_.push_back(
-      fmt::format("    <DataSet timestep=\"{:.6f}\" file=\"{}\"/>\n", time_s, name));
+  entries_.push_back(fmt::format("    <DataSet timestep=\"{:.6f}\" file=\"{}\"/>\n", time_s, name));
 }
 
 void VtuSeries::Commit() {

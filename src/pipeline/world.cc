@@ -32,9 +32,9 @@ std::vector<fem::Material> MaterialsOf(const scene::Scene& scene, const mesh::Te
   for (const auto& [region, material] : scene.materials) {
     const auto& names = mesh.region_names;
     if (region.empty() || std::find(names.begin(), names.end(), region) != names.end()) continue;
-    throw base::InputError(
-        scene.file.string() + ": body: material",
-        fmt::format("region \"{}\" is not in the mesh; it has: \"{}\"", region, fmt::join(names, "\", \"")));
+    throw base::InputError(scene.file.string() + ": body: material",
+                           fmt::format("region \"{}\" is not in the mesh; it has: \"{}\"", region,
+                                       fmt::join(names, "\", \"")));
   }
   return materials;
 }
@@ -50,8 +50,8 @@ std::set<int> NodesOfGroup(const std::string& group, const mesh::TetMesh& mesh,
                            const mesh::Surface& surface, const std::string& where) {
   const auto found = mesh.surface_groups.find(group);
   if (found == mesh.surface_groups.end()) {
-    throw base::InputError(where, fmt::format("the mesh has no surface group \"{}\"; it has: {}", group,
-                                              GroupNames(mesh)));
+    throw base::InputError(where, fmt::format("the mesh has no surface group \"{}\"; it has: {}",
+                                              group, GroupNames(mesh)));
   }
   std::set<std::array<int, 3>> wanted;
   for (std::array<int, 3> corners : found->second) {
@@ -91,12 +91,12 @@ std::vector<int> FixedNodes(const scene::Scene& scene, const mesh::TetMesh& mesh
     if (nodes.empty()) {
       const Eigen::Vector3d low = 1000 * mesh.nodes.rowwise().minCoeff();
       const Eigen::Vector3d high = 1000 * mesh.nodes.rowwise().maxCoeff();
-      throw base::InputError(
-          where,
-          fmt::format("holds no node of the mesh, which spans {:.4g} to {:.4g}, {:.4g} to {:.4g}, {:.4g} to "
-                      "{:.4g} mm",
-                      low.x(), high.x(), low.y(), high.y(), low.z(), high.z()),
-          "Check the box against the mesh, and the mesh's unit.");
+      throw base::InputError(where,
+                             fmt::format("holds no node of the mesh, which spans {:.4g} to {:.4g}, "
+                                         "{:.4g} to {:.4g}, {:.4g} to "
+                                         "{:.4g} mm",
+                                         low.x(), high.x(), low.y(), high.y(), low.z(), high.z()),
+                             "Check the box against the mesh, and the mesh's unit.");
     }
     fixed.insert(nodes.begin(), nodes.end());
   }
@@ -125,9 +125,12 @@ std::vector<fem::Cable> Cables(const scene::Scene& scene, const mesh::TetMesh& m
 
 Eigen::Matrix3Xd Directions(const scene::Candidate& candidate, const Eigen::Vector3d& normal) {
   switch (candidate.direction) {
-    case scene::ForceDirection::kFree: return Eigen::Matrix3d::Identity();
-    case scene::ForceDirection::kNormal: return -normal;  // a push
-    case scene::ForceDirection::kFixed: return candidate.fixed_direction;
+    case scene::ForceDirection::kFree:
+      return Eigen::Matrix3d::Identity();
+    case scene::ForceDirection::kNormal:
+      return -normal;  // a push
+    case scene::ForceDirection::kFixed:
+      return candidate.fixed_direction;
   }
   return {};
 }
@@ -151,11 +154,12 @@ BodyPoint PlaceOnSurface(const mesh::Surface& surface, const Eigen::Matrix3Xd& X
   if (!(found.distance <= kSurfaceTolerance)) {
     throw base::InputError(
         where,
-        fmt::format("({:.4g} {:.4g} {:.4g}) mm lies {:.3g} mm off the body's surface, at most {:.3g} mm is "
-                    "allowed; the nearest point of the surface is ({:.4g} {:.4g} {:.4g}) mm",
-                    1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), 1e3 * found.distance,
-                    1e3 * kSurfaceTolerance, 1e3 * found.position.x(), 1e3 * found.position.y(),
-                    1e3 * found.position.z()),
+        fmt::format(
+            "({:.4g} {:.4g} {:.4g}) mm lies {:.3g} mm off the body's surface, at most {:.3g} mm is "
+            "allowed; the nearest point of the surface is ({:.4g} {:.4g} {:.4g}) mm",
+            1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), 1e3 * found.distance,
+            1e3 * kSurfaceTolerance, 1e3 * found.position.x(), 1e3 * found.position.y(),
+            1e3 * found.position.z()),
         "Check the place, its unit, and that it is given in the mesh's frame.");
   }
   return {found.at, mesh::ShapeFunctions(surface, found.at), place - found.position};

@@ -135,9 +135,10 @@ ActuationTable ReadActuationTable(const std::filesystem::path& file,
     for (size_t a = 0; a < actuators.size(); ++a) {
       table.inputs(row, a) = number(a + 1) * columns[a + 1].in_si;
       if (actuators[a].input == ActuatorInput::kTension && table.inputs(row, a) < 0) {
-        throw InputError(fmt::format("{}: column \"{}\"", where, names[a + 1]),
-                         fmt::format("got a tension of {} N, expected 0 or more: a cable cannot push",
-                                     table.inputs(row, a)));
+        throw InputError(
+            fmt::format("{}: column \"{}\"", where, names[a + 1]),
+            fmt::format("got a tension of {} N, expected 0 or more: a cable cannot push",
+                        table.inputs(row, a)));
       }
     }
   }

@@ -71,7 +71,7 @@ std::optional<Edge> FitEdge(const cv::Mat& grey, const EdgeSearch& search) {
   if (!fit || fit->step.rise * search.rise < kMinRise) return std::nullopt;
   const Step& step = fit->step;
   Edge edge{middle,          along,    search.outward,       {step.a, step.b}, fit->covariance,
-            fit->clustering, step.low, step.low + step.rise, step.blur};
+            fit->clustering, step.low, step.low + step.rise, step.blur,        fit->noise};
   edge.covariance(0, 0) += kModelError * kModelError;
   return edge;
 }

@@ -25,6 +25,7 @@ struct Edge {
   double clustering;
   double inside, outside;  // grey levels on either side
   double blur;             // px
+  double noise;            // grey levels, standard deviation of a pixel about the fit
 
   double OffsetVariance(const Eigen::Vector2d& p) const;  // px², of the edge's place near p
 };

@@ -1,14 +1,16 @@
 #include "softforce/vision/rig_pose.h"
 
+#include <visp3/core/vpExponentialMap.h>
+#include <visp3/core/vpVelocityTwistMatrix.h>
+#include <visp3/vision/vpPose.h>
+#include <visp3/visual_features/vpFeaturePoint.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <visp3/core/vpExponentialMap.h>
-#include <visp3/core/vpVelocityTwistMatrix.h>
-#include <visp3/vision/vpPose.h>
-#include <visp3/visual_features/vpFeaturePoint.h>
+#include <limits>
+#include <optional>
 
 namespace softforce::vision {
 namespace {
@@ -85,8 +87,8 @@ std::optional<Eigen::Isometry3d> PoseInCamera(const std::vector<NormalisedSighti
   }
 }
 
-// One linearisation of virtual visual servoing over all cameras: the rig moves by a velocity v that takes the
-// whitened features to where they were seen.
+// One linearisation of virtual visual servoing over all cameras: the rig moves by a velocity v that
+// takes the whitened features to where they were seen.
 struct Servoing {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
@@ -101,8 +103,7 @@ Servoing Linearise(const camera::Rig& rig, const std::vector<NormalisedSighting>
   for (const camera::Camera& camera : rig.cameras) twists.emplace_back(ToVisp(camera.T_camera_rig));
   for (const NormalisedSighting& seen : sightings) {
     const int c = seen.sighting->camera;
-    const Eigen::Vector3d p =
-        rig.cameras[c].T_camera_rig * (T_rig_robot * seen.sighting->p_robot);
+    const Eigen::Vector3d p = rig.cameras[c].T_camera_rig * (T_rig_robot * seen.sighting->p_robot);
     if (!(p.z() > 0)) {
       servoing.in_front = false;
       return servoing;

@@ -112,7 +112,7 @@ std::optional<FittedStep> FitStep(const std::vector<BandPixel>& band, const Step
     if (std::abs(step.a) > reach || std::abs(step.b) > kMaxTilt) break;
     if (std::abs(change(3)) + half_length * std::abs(change(4)) < kSettled) {
       return FittedStep{step, noise2 * normal.A.inverse().bottomRightCorner<2, 2>(),
-                        Clustering(band, step, half_length, limit)};
+                        Clustering(band, step, half_length, limit), std::sqrt(noise2)};
     }
   }
   return std::nullopt;

@@ -23,6 +23,7 @@ struct FittedStep {
   // How many times larger the covariance is because video compression errs alike in neighbouring
   // pixels, as estimated from this edge alone: rough; take the mean over several edges.
   double clustering;
+  double noise;  // grey levels, standard deviation of a pixel about the step
 };
 
 // The step that fits a band best, from a guess. `half_length` and `reach` (px) are the band's

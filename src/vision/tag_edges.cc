@@ -48,17 +48,22 @@ bool Intersect(const Edge& before, const Edge& after, Eigen::Vector2d* corner,
 }
 
 // Whether all sides look alike. One that something covers looks like another edge: between other
-// levels, or drawn out.
+// levels, drawn out, or in two pieces that no single step fits.
 bool LookAlike(const std::array<Edge, 4>& sides) {
   constexpr double kMaxLevelChange = 0.3;  // of the contrast; light may fall unevenly
   constexpr double kMaxBlurRatio = 1.5;    // of opposite sides; motion blurs these alike
-  double inside = 0, outside = 0;
+  constexpr double kMaxNoiseRatio = 3;     // of the mean of the other three
+  constexpr double kMinNoise = 1;          // grey levels
+  double inside = 0, outside = 0, noise = 0;
   for (const Edge& side : sides) {
     inside += 0.25 * side.inside;
     outside += 0.25 * side.outside;
+    noise += std::max(side.noise, kMinNoise);
   }
   const double allowed = kMaxLevelChange * std::abs(outside - inside);
   for (int i = 0; i < 4; ++i) {
+    const double others = (noise - std::max(sides[i].noise, kMinNoise)) / 3;
+    if (sides[i].noise > kMaxNoiseRatio * others) return false;
     if (std::abs(sides[i].inside - inside) > allowed) return false;
     if (std::abs(sides[i].outside - outside) > allowed) return false;
     if (sides[i].blur > kMaxBlurRatio * sides[(i + 2) % 4].blur) return false;

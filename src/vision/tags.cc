@@ -19,8 +19,9 @@ namespace {
 // AprilTag 3 has the pixel CORNER at (0, 0); the project, like OpenCV, the pixel CENTRE.
 constexpr double kHalfPixel = 0.5;
 
-// How a tag stands upright is a matter of convention: OpenCV draws the classic families turned by half a turn against
-// AprilTag's own pictures. OpenCV's way holds here; families that it does not draw stand as AprilTag draws them.
+// How a tag stands upright is a matter of convention: OpenCV draws the classic families turned by
+// half a turn against AprilTag's own pictures. OpenCV's way holds here; families that it does not
+// draw stand as AprilTag draws them.
 struct FamilyMaker {
   const char* name;
   bool turned_by_opencv;

@@ -8,8 +8,9 @@
 namespace softforce {
 namespace {
 
-// A recording with truth, and how large the mean force error over its hold phase may be (per cent). The physics are
-// CalculiX's on a mesh several times finer, which the given meshes are too stiff against: see docs/accuracy.md.
+// A recording with truth, and how large the mean force error over its hold phase may be (per cent).
+// The physics are CalculiX's on a mesh several times finer, which the given meshes are too stiff
+// against: see docs/accuracy.md.
 struct RecordingCase {
   const char* name;
   const char* hold;
@@ -28,10 +29,9 @@ TEST_P(EveryRecording, GivesForcesWithinItsBound) {
   const testing::ProgramResult run = testing::RunProgram(
       fmt::format("run '{}' --out '{}'", (folder / "scene.yaml").string(), out.string()));
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const testing::ProgramResult comparison = testing::RunCommand(
-      fmt::format("'{}/scripts/compare_with_truth' '{}' '{}' --hold {} --max-error {}",
-                  SOFTFORCE_SOURCE_DIR, out.string(), (folder / "truth.json").string(),
-                  recording.hold, recording.max_error));
+  const testing::ProgramResult comparison = testing::RunCommand(fmt::format(
+      "'{}/scripts/compare_with_truth' '{}' '{}' --hold {} --max-error {}", SOFTFORCE_SOURCE_DIR,
+      out.string(), (folder / "truth.json").string(), recording.hold, recording.max_error));
 
   std::cout << recording.name << ", at most " << recording.max_error << " % allowed:\n"
             << comparison.output;
@@ -46,14 +46,15 @@ INSTANTIATE_TEST_SUITE_P(Shared, EveryRecording,
 
 TEST(Demo, WritesEveryFileAndOnlyComplete) {
   const std::filesystem::path out = testing::FreshFolder("demo");
-  const std::string scene = std::string(SOFTFORCE_SOURCE_DIR) + "/datasets/sheet_two_weights/scene.yaml";
+  const std::string scene =
+      std::string(SOFTFORCE_SOURCE_DIR) + "/datasets/sheet_two_weights/scene.yaml";
 
-  const testing::ProgramResult run =
-      testing::RunProgram(fmt::format("run '{}' --out '{}' --frames 0:4 --vtu", scene, out.string()));
+  const testing::ProgramResult run = testing::RunProgram(
+      fmt::format("run '{}' --out '{}' --frames 0:4 --vtu", scene, out.string()));
 
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  for (const char* name : {"forces.csv", "markers.csv", "summary.json", "overlay.mp4", "results.pvd",
-                           "vtu/frame_00003.vtu"}) {
+  for (const char* name : {"forces.csv", "markers.csv", "summary.json", "overlay.mp4",
+                           "results.pvd", "vtu/frame_00003.vtu"}) {
     EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
@@ -64,14 +65,16 @@ TEST(Demo, WritesEveryFileAndOnlyComplete) {
 }
 
 TEST(Demo, GivesTheSameBytesTwice) {
-  const std::string scene = std::string(SOFTFORCE_SOURCE_DIR) + "/datasets/sheet_two_weights/scene.yaml";
+  const std::string scene =
+      std::string(SOFTFORCE_SOURCE_DIR) + "/datasets/sheet_two_weights/scene.yaml";
   std::string first;
   for (int i = 0; i < 2; ++i) {
     const std::filesystem::path out = testing::FreshFolder("twice");
     const testing::ProgramResult run = testing::RunProgram(
         fmt::format("run '{}' --out '{}' --frames 0:3 --no-overlay", scene, out.string()));
     ASSERT_EQ(run.exit_code, 0) << run.errors;
-    const std::string bytes = testing::ReadText(out / "forces.csv") + testing::ReadText(out / "markers.csv");
+    const std::string bytes =
+        testing::ReadText(out / "forces.csv") + testing::ReadText(out / "markers.csv");
     if (i == 0) first = bytes;
     EXPECT_EQ(bytes, first);
   }

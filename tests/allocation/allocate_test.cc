@@ -14,13 +14,11 @@ using Status = AllocatedPixel::Status;
 PredictedPixel Predicted(double x, double y, double sigma = 5) {
   return {{x, y}, sigma * sigma * Eigen::Matrix2d::Identity()};
 }
-DetectedPixel Detected(double x, double y) {
-  return {{x, y}, 0.01 * Eigen::Matrix2d::Identity()};
-}
+DetectedPixel Detected(double x, double y) { return {{x, y}, 0.01 * Eigen::Matrix2d::Identity()}; }
 
 TEST(Allocate, GivesEachFeatureItsDetection) {
-  const auto found = Allocate({Predicted(100, 100), Predicted(200, 100)},
-                              {Detected(203, 98), Detected(101, 104)});
+  const auto found =
+      Allocate({Predicted(100, 100), Predicted(200, 100)}, {Detected(203, 98), Detected(101, 104)});
   EXPECT_EQ(found[0].detection, 1);
   EXPECT_EQ(found[1].detection, 0);
 }
@@ -32,7 +30,8 @@ TEST(Allocate, LeavesAFeatureWithoutDetectionHidden) {
 }
 
 TEST(Allocate, IsGlobalWhereTheNearestNeighbourGoesWrong) {
-  // All moved right by 12 px: the nearest neighbour of the second feature is the first one's detection.
+  // All moved right by 12 px: the nearest neighbour of the second feature is the first one's
+  // detection.
   const auto found = Allocate({Predicted(100, 100, 10), Predicted(120, 100, 10)},
                               {Detected(113, 100), Detected(133, 100)});
   EXPECT_EQ(found[0].detection, 0);
@@ -48,8 +47,10 @@ TEST(Allocate, LeavesACloseCallHiddenRatherThanGuess) {
 TEST(Allocate, HoldsThePapersThreshold) {
   AllocationOptions options;
   options.threshold_displacement_px = 8;
-  EXPECT_EQ(Allocate({Predicted(100, 100)}, {Detected(110, 100)}, options)[0].status, Status::kHidden);
-  EXPECT_EQ(Allocate({Predicted(100, 100)}, {Detected(107, 100)}, options)[0].status, Status::kSeen);
+  EXPECT_EQ(Allocate({Predicted(100, 100)}, {Detected(110, 100)}, options)[0].status,
+            Status::kHidden);
+  EXPECT_EQ(Allocate({Predicted(100, 100)}, {Detected(107, 100)}, options)[0].status,
+            Status::kSeen);
 }
 
 TEST(Allocate, StretchesItsGateAlongTheSoftDirection) {

@@ -121,6 +121,39 @@ TEST_P(OnRecording, DotsLieAtTheProjectedDiscs) {
   EXPECT_EQ(found, visible);
 }
 
+TEST_P(OnRecording, BodyTagsLieWhereTheBodyCarriesThem) {
+  if (truth_->frames[0].tags.empty()) GTEST_SKIP() << "its markers are dots";
+  const vision::TagDetector detector("tag36h11");
+  vision::Recording recording = truth_->Open();
+  double square = 0;
+  int found = 0, visible = 0;
+  for (const RecordingTruth::Frame& truth : truth_->frames) {
+    const auto frame = recording.Next();
+    ASSERT_TRUE(frame.has_value());
+    for (size_t c = 0; c < 2; ++c) {
+      const camera::Camera& camera = truth_->rig.cameras[c];
+      const auto seen = detector.Detect(frame->pictures[c]);
+      for (size_t m = 0; m < truth.tags.size(); ++m) {
+        visible += truth.visible[m][c] ? 1 : 0;
+        for (const vision::Tag& tag : seen) {
+          if (tag.id != truth.tags[m].id) continue;
+          ++found;
+          for (int i = 0; i < 4; ++i) {
+            const Eigen::Vector3d p =
+                camera.T_camera_rig * (*truth_->rig.T_rig_robot * truth.tags[m].corners[i]);
+            square += (tag.corners[i] - camera::Project(camera.lens, p).pixel).squaredNorm();
+          }
+        }
+      }
+    }
+  }
+  const double rms = std::sqrt(square / (4 * found));
+  Print("body_tag_corner_rms_2d", rms, "px");
+  Print("body_tags_found", 100.0 * found / visible, "%");
+  EXPECT_LT(rms, 0.06);
+  EXPECT_EQ(found, visible);
+}
+
 INSTANTIATE_TEST_SUITE_P(Shipped, OnRecording,
                          ::testing::Values("sheet_two_weights", "sheet_two_weights_tags",
                                            "robot_tip_weight"));

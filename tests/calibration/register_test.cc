@@ -117,6 +117,24 @@ TEST(FiducialRegistration, IgnoresTagsThatItDoesNotKnow) {
   EXPECT_LT(ErrorOf(registration.Solve()), 1e-9);  // m, rad
 }
 
+TEST(FiducialRegistration, IgnoresAnIdThatIsSeenTwiceInOnePicture) {
+  const camera::Rig rig = MakeStereoRig();
+  const std::vector<Fiducial> fiducials = MakeFiducials();
+  std::mt19937 random(1);
+  auto tags = See(rig, fiducials, 0, random);
+  vision::Tag stray = tags[0][1];
+  for (Eigen::Vector2d& corner : stray.corners) corner.array() += 1e6;  // poison
+  tags[0].push_back(stray);
+  FiducialRegistration registration(rig, fiducials);
+
+  registration.Add(tags);
+
+  EXPECT_EQ(registration.num_sightings(), 7);
+  const vision::RigPose pose = registration.Solve();
+  ASSERT_EQ(pose.status, vision::RigPose::Status::kOk);
+  EXPECT_LT((pose.T_rig_robot.matrix() - kTruth.matrix()).norm(), 1e-9);  // m, exact up to rounding
+}
+
 TEST(FiducialRegistration, RecognisesTagsThatAreAllTurnedAlike) {
   const camera::Rig rig = MakeStereoRig();
   for (const int turns : {1, 2, 3}) {

@@ -9,7 +9,8 @@
 namespace softforce::camera {
 namespace {
 
-const BrownConrady kLens{1603.2, 1601.7, 655.3, 498.6, {-0.12, 0.08, 0.0006, -0.0004, 0.01, 0.02, 0.01, 0}};
+const BrownConrady kLens{
+    1603.2, 1601.7, 655.3, 498.6, {-0.12, 0.08, 0.0006, -0.0004, 0.01, 0.02, 0.01, 0}};
 
 TEST(Lens, UnprojectUndoesProject) {
   for (double x = -0.35; x <= 0.35; x += 0.1) {
@@ -34,8 +35,10 @@ TEST(Lens, AgreesWithTheModelWrittenOut) {
 
   const Projection at = Project(lens, {x, y, 1});
 
-  EXPECT_NEAR(at.pixel.x(), 1000 * (x * radial + 2 * 0.001 * x * y + 0.002 * (r2 + 2 * x * x)) + 640, 1e-10);
-  EXPECT_NEAR(at.pixel.y(), 900 * (y * radial + 0.001 * (r2 + 2 * y * y) + 2 * 0.002 * x * y) + 480, 1e-10);
+  EXPECT_NEAR(at.pixel.x(),
+              1000 * (x * radial + 2 * 0.001 * x * y + 0.002 * (r2 + 2 * x * x)) + 640, 1e-10);
+  EXPECT_NEAR(at.pixel.y(), 900 * (y * radial + 0.001 * (r2 + 2 * y * y) + 2 * 0.002 * x * y) + 480,
+              1e-10);
 }
 
 TEST(Lens, JacobianIsTheDerivative) {
@@ -71,8 +74,8 @@ Eigen::Vector2d SampledCentroid(const Eigen::Vector3d& centre, const Eigen::Vect
     const double radius = diameter / 2 * std::sqrt((i + 0.5) / kRings);
     for (int j = 0; j < 100; ++j) {
       const double angle = 2 * M_PI * j / 100;
-      const Projection at = Project(
-          kLens, centre + radius * (std::cos(angle) * e1 + std::sin(angle) * e2));
+      const Projection at =
+          Project(kLens, centre + radius * (std::cos(angle) * e1 + std::sin(angle) * e2));
       Eigen::Matrix2d d;
       d << at.jacobian * e1, at.jacobian * e2;
       sum += std::abs(d.determinant()) * at.pixel;

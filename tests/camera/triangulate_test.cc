@@ -33,7 +33,8 @@ TEST(Triangulate, ReportsTheScatterThatNoiseMakes) {
   double chi2 = 0;
   for (int i = 0; i < kTrials; ++i) {
     auto pixels = testing::ProjectInto(rig, p_rig, sigma);
-    for (PixelObservation& seen : pixels) seen.pixel += Eigen::Vector2d(noise(random), noise(random));
+    for (PixelObservation& seen : pixels)
+      seen.pixel += Eigen::Vector2d(noise(random), noise(random));
     const Triangulation result = Triangulate(rig, pixels);
     const Eigen::Vector3d error = result.p_rig - p_rig;
     normalised += error.dot(result.covariance.ldlt().solve(error)) / 3;

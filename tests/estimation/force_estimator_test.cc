@@ -70,8 +70,8 @@ TEST(ForceEstimator, UsesCablesByDisplacementAsKnownInputs) {
   const ForceEstimate estimate = estimator.Estimate(bar.Observe(truth, kNoise), commands);
 
   ASSERT_TRUE(estimate.ok()) << estimate.BriefReport();
-  EXPECT_LT((estimate.intensity - force).norm(), 1e-5);                     // N
-  EXPECT_NEAR(estimator.state().tension(0), truth.tension(0), 1e-5);        // N
+  EXPECT_LT((estimate.intensity - force).norm(), 1e-5);               // N
+  EXPECT_NEAR(estimator.state().tension(0), truth.tension(0), 1e-5);  // N
 }
 
 TEST(ForceEstimator, TwoEquationsFromOneCameraCountAsTwo) {

@@ -9,7 +9,7 @@
 namespace softforce::estimation {
 namespace {
 
-constexpr double kNoise = 2e-5;  // m
+constexpr double kNoise = 2e-5;              // m
 const Eigen::Vector2d kForce(0.005, -0.01);  // N
 
 ForceEstimate EstimateFrom(const testing::BarExperiment& bar,

@@ -6,13 +6,14 @@
 namespace softforce::fem {
 namespace {
 
-// A bar with a cable along its upper side: attached at the tip, through a via point, to a guide behind its foot.
+// A bar with a cable along its upper side: attached at the tip, through a via point, to a guide
+// behind its foot.
 Body BarWithCable() {
   Body bar = testing::MakeBar();
-  bar.cables.push_back({"upper",
-                        {testing::PointOf(bar, {0.1, 0.005, 0.01}),
-                         testing::PointOf(bar, {0.05, 0.005, 0.01})},
-                        {-0.02, 0.005, 0.02}});
+  bar.cables.push_back(
+      {"upper",
+       {testing::PointOf(bar, {0.1, 0.005, 0.01}), testing::PointOf(bar, {0.05, 0.005, 0.01})},
+       {-0.02, 0.005, 0.02}});
   return bar;
 }
 
@@ -41,11 +42,13 @@ TEST(Cable, ByDisplacementNeedsTheTensionThatMakesThatDisplacement) {
   ASSERT_TRUE(solver.Solve(Command(body, CableInput::kTension, 0.2), &pulled).ok());
   Equilibrium shortened = solver.AtRest();
 
-  ASSERT_TRUE(solver.Solve(Command(body, CableInput::kDisplacement, pulled.shortening(0)), &shortened).ok());
+  ASSERT_TRUE(
+      solver.Solve(Command(body, CableInput::kDisplacement, pulled.shortening(0)), &shortened)
+          .ok());
 
-  EXPECT_NEAR(shortened.tension(0), 0.2, 1e-6);                         // N
-  EXPECT_LT((shortened.u - pulled.u).cwiseAbs().maxCoeff(), 1e-7);      // m
-  EXPECT_NEAR(shortened.shortening(0), pulled.shortening(0), 1e-10);    // m
+  EXPECT_NEAR(shortened.tension(0), 0.2, 1e-6);                       // N
+  EXPECT_LT((shortened.u - pulled.u).cwiseAbs().maxCoeff(), 1e-7);    // m
+  EXPECT_NEAR(shortened.shortening(0), pulled.shortening(0), 1e-10);  // m
 }
 
 TEST(Cable, NeverPushes) {
@@ -53,7 +56,8 @@ TEST(Cable, NeverPushes) {
   StaticSolver solver(body, "body");
   Equilibrium state = solver.AtRest();
 
-  ASSERT_TRUE(solver.Solve(Command(body, CableInput::kDisplacement, -2e-3), &state).ok());  // let out
+  ASSERT_TRUE(
+      solver.Solve(Command(body, CableInput::kDisplacement, -2e-3), &state).ok());  // let out
 
   EXPECT_EQ(state.tension(0), 0);
   EXPECT_LT(state.u.cwiseAbs().maxCoeff(), 1e-9);  // m
@@ -80,7 +84,8 @@ TEST(Cable, SensitivityHoldsTheCommandedDisplacement) {
   Equilibrium state = solver.AtRest();
   ASSERT_TRUE(solver.Solve(load, &state).ok());
   ASSERT_GT(state.tension(0), 0);
-  const Eigen::MatrixXd column = testing::LoadAt(body, tip, Eigen::Vector3d::UnitZ()).forces.reshaped();
+  const Eigen::MatrixXd column =
+      testing::LoadAt(body, tip, Eigen::Vector3d::UnitZ()).forces.reshaped();
 
   const Sensitivity sensitivity = solver.Solve(state, column, 0);
 
@@ -94,7 +99,8 @@ TEST(Cable, SensitivityHoldsTheCommandedDisplacement) {
   const Eigen::VectorXd slope = ((up.u - down.u) / (2 * h)).reshaped();
   EXPECT_LT((sensitivity.du - slope).norm(), 1e-4 * slope.norm());
   const double d_tension = (up.tension(0) - down.tension(0)) / (2 * h);
-  EXPECT_NEAR(std::abs(sensitivity.d_tension(0, 0)), std::abs(d_tension), 1e-4 * std::abs(d_tension));
+  EXPECT_NEAR(std::abs(sensitivity.d_tension(0, 0)), std::abs(d_tension),
+              1e-4 * std::abs(d_tension));
 }
 
 }  // namespace

@@ -23,8 +23,7 @@ class EveryMaterial : public ::testing::TestWithParam<MaterialModel> {
 Eigen::Matrix3d RandomStretch(int seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> entry(-0.25, 0.25);
-  return Eigen::Matrix3d::Identity() +
-         Eigen::Matrix3d::NullaryExpr([&] { return entry(random); });
+  return Eigen::Matrix3d::Identity() + Eigen::Matrix3d::NullaryExpr([&] { return entry(random); });
 }
 
 TEST_P(EveryMaterial, StressIsTheDerivativeOfTheEnergy) {
@@ -36,7 +35,8 @@ TEST_P(EveryMaterial, StressIsTheDerivativeOfTheEnergy) {
       Eigen::Matrix3d dF = Eigen::Matrix3d::Zero();
       dF(i) = h;
       const double slope = (Evaluate(material(), F + dF, false).energy -
-                            Evaluate(material(), F - dF, false).energy) / (2 * h);
+                            Evaluate(material(), F - dF, false).energy) /
+                           (2 * h);
       EXPECT_NEAR(P(i), slope, 1e-6 * kModulus);
     }
   }
@@ -69,8 +69,8 @@ TEST_P(EveryMaterial, IsHookesLawAtSmallStrain) {
   Eigen::Matrix3d e = Eigen::Matrix3d::Zero();
   e(0, 0) = strain;
   e(0, 1) = e(1, 0) = strain / 2;
-  const Eigen::Matrix3d hooke = 2 * material().mu() * e +
-                                material().lambda() * e.trace() * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d hooke =
+      2 * material().mu() * e + material().lambda() * e.trace() * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d P = Evaluate(material(), Eigen::Matrix3d::Identity() + e, false).P;
   EXPECT_LT((P - hooke).norm(), 1e-4 * hooke.norm());
 }
@@ -82,7 +82,8 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryMaterial,
                                            MaterialModel::kNeoHookeanLogarithmic),
                          [](const auto& instance) { return std::string(Name(instance.param)); });
 
-// Nominal stress (Pa) of a bar stretched by `stretch`, its sides free: the lateral stretch is found by bisection.
+// Nominal stress (Pa) of a bar stretched by `stretch`, its sides free: the lateral stretch is found
+// by bisection.
 double UniaxialStress(const Material& material, double stretch) {
   double low = 0.5, high = 1.6;
   Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
@@ -129,10 +130,12 @@ TEST(Material, IsKnownByItsName) {
 
 TEST(Material, RefusesValuesOutOfRange) {
   for (const double modulus : std::vector<double>{0, -1, NAN, INFINITY}) {
-    EXPECT_THROW((Material{MaterialModel::kNeoHookean, modulus, 0.4}.Check("scene")), base::InputError);
+    EXPECT_THROW((Material{MaterialModel::kNeoHookean, modulus, 0.4}.Check("scene")),
+                 base::InputError);
   }
   for (const double ratio : std::vector<double>{-0.1, 0.5, NAN}) {
-    EXPECT_THROW((Material{MaterialModel::kNeoHookean, 1e5, ratio}.Check("scene")), base::InputError);
+    EXPECT_THROW((Material{MaterialModel::kNeoHookean, 1e5, ratio}.Check("scene")),
+                 base::InputError);
   }
 }
 

@@ -22,7 +22,8 @@ TEST_P(EveryOrder, AnAffineDeformationIsReproducedExactly) {
   for (int n = 0; n < body.mesh.num_nodes(); ++n) {
     const Eigen::Vector3d X = body.mesh.nodes.col(n);
     const bool inside = X.minCoeff() > 1e-9 && X.maxCoeff() < 0.03 - 1e-9;
-    if (inside) body.mesh.nodes.col(n) += Eigen::Vector3d(shift(random), shift(random), shift(random));
+    if (inside)
+      body.mesh.nodes.col(n) += Eigen::Vector3d(shift(random), shift(random), shift(random));
   }
   if (GetParam() == 2) body.mesh = mesh::RaiseOrder(body.mesh);
   body.materials = {testing::Silicone()};

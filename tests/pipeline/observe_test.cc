@@ -9,7 +9,8 @@
 namespace softforce::pipeline {
 namespace {
 
-// Dots of 6 mm on a plate that faces the cameras, 0.45 m away, in a grid of 30 mm; robot frame = rig frame.
+// Dots of 6 mm on a plate that faces the cameras, 0.45 m away, in a grid of 30 mm; robot frame =
+// rig frame.
 struct Plate {
   camera::Rig rig = testing::MakeStereoRig();
   Eigen::Isometry3d T_rig_robot = Eigen::Isometry3d::Identity();
@@ -60,7 +61,8 @@ TEST(Observe, LocatesDotsByTheirCentres) {
 
   for (size_t f = 0; f < observations.size(); ++f) {
     ASSERT_EQ(observations[f].status, FeatureObservation::Status::kSeen);
-    // The centroid's shift against the centre is taken off at the predicted place: good to a micrometre.
+    // The centroid's shift against the centre is taken off at the predicted place: good to a
+    // micrometre.
     EXPECT_LT((observations[f].position - plate.truth[f]).norm(), 1e-6);  // m
   }
 }
@@ -73,8 +75,8 @@ TEST(Observe, AMissingDotIsHiddenAndNothingElseChanges) {
   const auto observations = plate.Observe(cameras);
 
   for (size_t f = 0; f < observations.size(); ++f) {
-    EXPECT_EQ(observations[f].status, f == 4 ? FeatureObservation::Status::kHidden
-                                             : FeatureObservation::Status::kSeen);
+    EXPECT_EQ(observations[f].status,
+              f == 4 ? FeatureObservation::Status::kHidden : FeatureObservation::Status::kSeen);
   }
 }
 
@@ -88,8 +90,9 @@ TEST(Observe, ADotSeenByOneCameraGivesTwoEquations) {
   ASSERT_EQ(seen.status, FeatureObservation::Status::kOneCamera);
   ASSERT_EQ(seen.whitening.rows(), 2);
   // Across the ray it is measured; along the ray it says nothing.
-  EXPECT_LT((seen.whitening * (seen.position - plate.truth[4])).norm(), 0.05);  // standard deviations
-  const Eigen::Vector3d ray = plate.truth[4].normalized();                      // left camera at the origin
+  EXPECT_LT((seen.whitening * (seen.position - plate.truth[4])).norm(),
+            0.05);                                          // standard deviations
+  const Eigen::Vector3d ray = plate.truth[4].normalized();  // left camera at the origin
   EXPECT_LT((seen.whitening * (1e-3 * ray)).norm(), 0.1);
 }
 

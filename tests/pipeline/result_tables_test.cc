@@ -46,12 +46,15 @@ TEST(ResultTables, WriteTheColumnsThatScriptsRead) {
   tables.Commit();
 
   EXPECT_EQ(ReadText(folder / "forces.csv"),
-            "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_N,fy_N,fz_N,"
+            "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_N,"
+            "fy_N,fz_N,"
             "norm_N,sd_x_N,sd_y_N,sd_z_N,sd_location_mm\n"
-            "3,0.100000,0,7,ok,10.0000,20.0000,30.0000,11.0000,20.0000,30.0000,0.000000,0.000000,-0.500000,"
+            "3,0.100000,0,7,ok,10.0000,20.0000,30.0000,11.0000,20.0000,30.0000,0.000000,0.000000,-"
+            "0.500000,"
             "0.500000,0.010000,0.020000,0.030000,0.0000\n");
   EXPECT_EQ(ReadText(folder / "markers.csv"),
-            "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,residual_mm\n"
+            "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,"
+            "residual_mm\n"
             "3,0.100000,2,hidden,,,,,1.0000,2.0000,3.0000,\n");
   EXPECT_EQ(ReadText(folder / "actuation.csv"),
             "frame,time_s,actuator,tension_N,displacement_mm\n3,0.100000,left,0.900000,8.00000\n");

@@ -73,6 +73,13 @@ TEST(ActuationTable, RefusesARowOfAnotherLength) {
             "actuation.csv:2: got 3 cells, expected 4 as in the header");
 }
 
+TEST(ActuationTable, RefusesATensionThatPushes) {
+  EXPECT_EQ(ActuationRefusal("time_s,left_mm,right_N,chamber_kPa\n0,0,-1,0\n"),
+            "actuation.csv:2: column \"right_N\": got a tension of -1 N, expected 0 or more: a "
+            "cable cannot "
+            "push");
+}
+
 TEST(ActuationTable, RefusesTimesThatDoNotAscend) {
   EXPECT_EQ(ActuationRefusal("time_s,left_mm,right_N,chamber_kPa\n0.5,0,0,0\n0.5,0,0,0\n"),
             "actuation.csv:3: got the time 0.5 s after 0.5 s, expected ascending times");

@@ -75,7 +75,7 @@ TEST(LoadRig, RefusesAMatrixThatIsNoRotation) {
       RigRefusal("[0.6, 0, 0.8, -0.1]", "[0.6, 0, 0.7, -0.1]"),
       "rig.yaml:14: cameras: right: T_camera_rig: rotation has determinant 0.92 and is off by "
       "0.15, expected determinant 1 and at most 1e-06 off in any entry of R'R - I\n"
-      "  Recalibrate with: softforce calibrate --help");
+      "  Write the matrix with at least 7 digits, as the calibration gave it.");
 }
 
 TEST(LoadRig, RefusesAMirror) {

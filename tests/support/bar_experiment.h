@@ -8,8 +8,8 @@
 
 namespace softforce::testing {
 
-// A bar held at one end, loaded by forces of known place, and seen at points along it. The truth is made by the same
-// discretisation: these experiments check the estimator, not the model.
+// A bar held at one end, loaded by forces of known place, and seen at points along it. The truth is
+// made by the same discretisation: these experiments check the estimator, not the model.
 struct BarExperiment {
   fem::Body body = MakeBar();
   std::vector<mesh::NodalWeights> points;

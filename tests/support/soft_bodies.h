@@ -35,7 +35,8 @@ inline fem::LoadCase LoadAt(const fem::Body& body, const mesh::NodalWeights& at,
                             const Eigen::Vector3d& force) {
   fem::LoadCase load;
   load.forces = Eigen::Matrix3Xd::Zero(3, body.mesh.num_nodes());
-  for (size_t i = 0; i < at.nodes.size(); ++i) load.forces.col(at.nodes[i]) += at.weights[i] * force;
+  for (size_t i = 0; i < at.nodes.size(); ++i)
+    load.forces.col(at.nodes[i]) += at.weights[i] * force;
   load.commands.resize(body.cables.size());
   return load;
 }

@@ -7,7 +7,8 @@
 
 namespace softforce::testing {
 
-// Two cameras 150 mm apart that turn in towards a point 0.45 m in front of the left one, with lens distortion.
+// Two cameras 150 mm apart that turn in towards a point 0.45 m in front of the left one, with lens
+// distortion.
 inline camera::Rig MakeStereoRig() {
   camera::Rig rig;
   camera::Camera left;
@@ -18,8 +19,8 @@ inline camera::Rig MakeStereoRig() {
   camera::Camera right = left;
   right.name = "right";
   right.lens.distortion = {-0.11, 0.07, -0.0005, 0.0007, 0, 0, 0, 0};
-  right.T_camera_rig = Eigen::AngleAxisd(0.32, Eigen::Vector3d::UnitY()) *
-                       Eigen::Translation3d(-0.15, 0.002, 0.01);
+  right.T_camera_rig =
+      Eigen::AngleAxisd(0.32, Eigen::Vector3d::UnitY()) * Eigen::Translation3d(-0.15, 0.002, 0.01);
   rig.cameras = {left, right};
   return rig;
 }

@@ -12,7 +12,8 @@ using Tag = RecordingTruth::Tag;
 Eigen::Isometry3d Transform(const Json& rows_mm) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 4; ++c) T.matrix()(r, c) = rows_mm[r][c].get<double>() * (c == 3 ? 1e-3 : 1);
+    for (int c = 0; c < 4; ++c)
+      T.matrix()(r, c) = rows_mm[r][c].get<double>() * (c == 3 ? 1e-3 : 1);
   }
   return T;
 }

@@ -7,7 +7,8 @@
 namespace softforce::testing {
 namespace {
 
-// What a pixel sees in one direction: its own width and the lens's blur. The share that lies below x, px.
+// What a pixel sees in one direction: its own width and the lens's blur. The share that lies below
+// x, px.
 double Seen(double x, double blur) {
   const auto integral = [&](double t) {  // of the normal distribution's share below t
     return 0.5 * t * std::erfc(-t / (blur * M_SQRT2)) +
@@ -36,8 +37,8 @@ double BitReversed(int i) {
 
 SyntheticScene::SyntheticScene(int width, int height, double ground, double blur)
     : grey_(height, width, ground) {
-  // Hammersley's points: no two share a row or a column, so that an edge along the pixels is painted as
-  // finely as any other.
+  // Hammersley's points: no two share a row or a column, so that an edge along the pixels is
+  // painted as finely as any other.
   constexpr int kSamples = 128;
   for (int i = 0; i < kSamples; ++i) {
     samples_.emplace_back(PlaceOfShare((i + 0.5) / kSamples, blur),
@@ -103,12 +104,11 @@ void PaintDisc(const camera::BrownConrady& lens, const Eigen::Vector3d& centre,
                const Eigen::Vector3d& normal, double diameter, double level,
                SyntheticScene* scene) {
   const double reach = 0.6 * lens.fx * diameter / centre.z() + 4;  // px
-  scene->Paint(
-      camera::Project(lens, centre).pixel, reach, [&](const Eigen::Vector2d& p) -> double {
-        const Eigen::Vector3d ray = camera::Unproject(lens, p).value().homogeneous();
-        const Eigen::Vector3d on_plane = ray * (normal.dot(centre) / normal.dot(ray));
-        return (on_plane - centre).norm() <= 0.5 * diameter ? level : NAN;
-      });
+  scene->Paint(camera::Project(lens, centre).pixel, reach, [&](const Eigen::Vector2d& p) -> double {
+    const Eigen::Vector3d ray = camera::Unproject(lens, p).value().homogeneous();
+    const Eigen::Vector3d on_plane = ray * (normal.dot(centre) / normal.dot(ray));
+    return (on_plane - centre).norm() <= 0.5 * diameter ? level : NAN;
+  });
 }
 
 }  // namespace softforce::testing

@@ -10,14 +10,15 @@
 
 namespace softforce::testing {
 
-// A grey scene as a lens with a little blur and square pixels see it, painted with sub-pixel accuracy.
+// A grey scene as a lens with a little blur and square pixels see it, painted with sub-pixel
+// accuracy.
 class SyntheticScene {
  public:
   // px, px, grey levels; `blur` is the standard deviation of the lens's, px.
   SyntheticScene(int width, int height, double ground, double blur = 0.65);
 
-  // Replaces what lies within `reach` (px) of `middle` by `level(p)`, averaged over what each pixel sees.
-  // Where `level` is NaN, what was there stays.
+  // Replaces what lies within `reach` (px) of `middle` by `level(p)`, averaged over what each pixel
+  // sees. Where `level` is NaN, what was there stays.
   void Paint(const Eigen::Vector2d& middle, double reach,
              const std::function<double(const Eigen::Vector2d&)>& level);
 

@@ -19,11 +19,12 @@ struct DetectedPixel {
 };
 
 struct AllocationOptions {
-  double gate_probability = 0.999;  // share of right detections that the Mahalanobis gate lets through
+  double gate_probability =
+      0.999;  // share of right detections that the Mahalanobis gate lets through
   // The paper's threshold displacement, in pixels of this camera; 0 turns it off.
   double threshold_displacement_px = 0;
-  // How much better the best assignment must be than any that gives a feature another detection, in units
-  // of half χ²; closer calls are left hidden rather than guessed.
+  // How much better the best assignment must be than any that gives a feature another detection, in
+  // units of half χ²; closer calls are left hidden rather than guessed.
   double min_margin = 3.0;
 
   void Check() const;  // throws InputError naming the option
@@ -34,14 +35,16 @@ struct AllocatedPixel {
   enum class Status { kHidden, kSeen, kAmbiguous };
 
   Status status = Status::kHidden;
-  int detection = -1;     // number of the detection; set if kSeen
-  double distance2 = NAN; // squared Mahalanobis distance of the innovation; set if kSeen or kAmbiguous
+  int detection = -1;  // number of the detection; set if kSeen
+  double distance2 =
+      NAN;  // squared Mahalanobis distance of the innovation; set if kSeen or kAmbiguous
 };
 
 // Which detection belongs to which predicted feature, in one camera: each feature gets at most one
-// detection within its gate and each detection goes to at most one feature, so that the total of squared
-// Mahalanobis distances, with a price for leaving a feature hidden, is least (Hungarian assignment).
-// Detections that nothing claims are clutter. Detections or predictions that are not finite are left out.
+// detection within its gate and each detection goes to at most one feature, so that the total of
+// squared Mahalanobis distances, with a price for leaving a feature hidden, is least (Hungarian
+// assignment). Detections that nothing claims are clutter. Detections or predictions that are not
+// finite are left out.
 std::vector<AllocatedPixel> Allocate(const std::vector<PredictedPixel>& predictions,
                                      const std::vector<DetectedPixel>& detections,
                                      const AllocationOptions& options = {});

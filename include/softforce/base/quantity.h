@@ -6,7 +6,16 @@
 namespace softforce::base {
 
 // What a number in a file for people measures. Every kind but kNumber must carry a unit.
-enum class Dimension { kNumber, kLength, kForce, kPressure, kDensity, kAcceleration, kTime, kAngle };
+enum class Dimension {
+  kNumber,
+  kLength,
+  kForce,
+  kPressure,
+  kDensity,
+  kAcceleration,
+  kTime,
+  kAngle
+};
 
 // The size of one `unit` in SI, e.g. UnitInSi("mm", kLength) = 1e-3.
 // Throws InputError, naming `where`, if the unit is unknown or measures something else.

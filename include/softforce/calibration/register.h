@@ -15,12 +15,14 @@ namespace softforce::calibration {
 struct Fiducial {
   std::string family = "tag36h11";
   int id = -1;
-  std::array<Eigen::Vector3d, 4> corners;  // m, robot frame; TL TR BR BL of the upright tag's black square
+  std::array<Eigen::Vector3d, 4>
+      corners;  // m, robot frame; TL TR BR BL of the upright tag's black square
 };
 
-// Collects sightings of base fiducials over frames of a rig that stands still, and finds where it stands.
-// The corners of a tag are averaged over the frames, which takes away the pictures' noise but not what is
-// the same in all (lens model, print), so a floor is kept under the averaged covariance.
+// Collects sightings of base fiducials over frames of a rig that stands still, and finds where it
+// stands. The corners of a tag are averaged over the frames, which takes away the pictures' noise
+// but not what is the same in all (lens model, print), so a floor is kept under the averaged
+// covariance.
 class FiducialRegistration {
  public:
   FiducialRegistration(const camera::Rig& rig, std::vector<Fiducial> fiducials);
@@ -33,8 +35,8 @@ class FiducialRegistration {
 
   int num_sightings() const;
 
-  // Status kTooFewPoints if no fiducial was seen. If the corners fit badly as given and all tags turned alike by
-  // quarter turns fit well, the tags are taken to be mounted that way.
+  // Status kTooFewPoints if no fiducial was seen. If the corners fit badly as given and all tags
+  // turned alike by quarter turns fit well, the tags are taken to be mounted that way.
   vision::RigPose Solve() const;
 
  private:

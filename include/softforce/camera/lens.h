@@ -15,20 +15,22 @@ struct BrownConrady {
 
 struct Projection {
   Eigen::Vector2d pixel = Eigen::Vector2d::Constant(NAN);  // px, distorted; NaN unless `visible`
-  Eigen::Matrix<double, 2, 3> jacobian = Eigen::Matrix<double, 2, 3>::Constant(NAN);  // d pixel / d p, px/m
-  bool visible = false;  // in front of the camera, and within the part of the lens that the model covers
+  Eigen::Matrix<double, 2, 3> jacobian =
+      Eigen::Matrix<double, 2, 3>::Constant(NAN);  // d pixel / d p, px/m
+  bool visible =
+      false;  // in front of the camera, and within the part of the lens that the model covers
 };
 
 // Where a point p_camera (m; x right, y down, z forward) is seen.
 Projection Project(const BrownConrady& lens, const Eigen::Vector3d& p_camera);
 
-// The point on the plane z = 1 (undistorted, normalised coordinates) seen at a pixel, by Newton's method;
-// nothing if no such point exists (a pixel far outside the calibrated field).
+// The point on the plane z = 1 (undistorted, normalised coordinates) seen at a pixel, by Newton's
+// method; nothing if no such point exists (a pixel far outside the calibrated field).
 std::optional<Eigen::Vector2d> Unproject(const BrownConrady& lens, const Eigen::Vector2d& pixel);
 
-// The centroid of the picture of a flat disc. It differs from the projection of the disc's centre by
-// perspective and distortion (0.02–0.04 px for a 6 mm dot at 45°), so a dot's centroid must be compared
-// with this. Nothing if any part of the disc is not visible.
+// The centroid of the picture of a flat disc. It differs from the projection of the disc's centre
+// by perspective and distortion (0.02–0.04 px for a 6 mm dot at 45°), so a dot's centroid must be
+// compared with this. Nothing if any part of the disc is not visible.
 std::optional<Eigen::Vector2d> ProjectDiscCentroid(const BrownConrady& lens,
                                                    const Eigen::Vector3d& centre_camera,
                                                    const Eigen::Vector3d& normal_camera,

@@ -34,9 +34,9 @@ struct Triangulation {
   bool ok() const { return status == Status::kOk; }
 };
 
-// Finds one point from its distorted pixels in two or more cameras, as the maximum-likelihood point for
-// pixel noise of the given covariances (Gauss–Newton on the reprojection error, from the rays' closest
-// point). Poor geometry is an answer, not an error: read `status`.
+// Finds one point from its distorted pixels in two or more cameras, as the maximum-likelihood point
+// for pixel noise of the given covariances (Gauss–Newton on the reprojection error, from the rays'
+// closest point). Poor geometry is an answer, not an error: read `status`.
 Triangulation Triangulate(const Rig& rig, const std::vector<PixelObservation>& pixels,
                           const TriangulationOptions& options = {});
 

@@ -10,8 +10,8 @@
 
 namespace softforce::fem {
 
-// A cable that runs freely through points of the body and out to a guide fixed in space. It pulls, never
-// pushes, and its directions follow the deformation.
+// A cable that runs freely through points of the body and out to a guide fixed in space. It pulls,
+// never pushes, and its directions follow the deformation.
 struct Cable {
   std::string name;
   std::vector<mesh::NodalWeights> points;  // attachment first, then via points towards the guide
@@ -27,8 +27,9 @@ struct Body {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // m/s²
   double density = 0;                                 // kg/m³
 
-  // Throws InputError, naming `where`, if any part of the body that hangs together is held at fewer than three
-  // points that span a plane, so that it could drift or spin away, or if a material is out of range.
+  // Throws InputError, naming `where`, if any part of the body that hangs together is held at fewer
+  // than three points that span a plane, so that it could drift or spin away, or if a material is
+  // out of range.
   void Check(const std::string& where) const;
 };
 

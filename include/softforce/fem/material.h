@@ -8,13 +8,15 @@ namespace softforce::fem {
 
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-// Elastic laws by the energy density they stand for, with mu and lambda the Lamé parameters, kappa the bulk
-// modulus, F the deformation gradient, J = det F, I1 = tr FᵀF.
+// Elastic laws by the energy density they stand for, with mu and lambda the Lamé parameters, kappa
+// the bulk modulus, F the deformation gradient, J = det F, I1 = tr FᵀF.
 enum class MaterialModel {
-  kCorotational,         // mu |F − R|² + lambda/2 (tr(RᵀF) − 3)²: Hooke's law in the rotated frame R of F = RS
-  kStVenantKirchhoff,    // mu |E|² + lambda/2 (tr E)², E = (FᵀF − I)/2
-  kNeoHookean,           // mu/2 (J^(−2/3) I1 − 3) + kappa/4 (J² − 1 − 2 ln J): deviatoric and volumetric part split
-  kNeoHookeanLogarithmic // mu/2 (I1 − 3) − mu ln J + lambda/2 (ln J)²
+  kCorotational,  // mu |F − R|² + lambda/2 (tr(RᵀF) − 3)²: Hooke's law in the rotated frame R of F
+                  // = RS
+  kStVenantKirchhoff,  // mu |E|² + lambda/2 (tr E)², E = (FᵀF − I)/2
+  kNeoHookean,  // mu/2 (J^(−2/3) I1 − 3) + kappa/4 (J² − 1 − 2 ln J): deviatoric and volumetric
+                // part split
+  kNeoHookeanLogarithmic  // mu/2 (I1 − 3) − mu ln J + lambda/2 (ln J)²
 };
 
 // The name in scene files ("neo_hookean"), and back; nothing for an unknown name.
@@ -36,8 +38,8 @@ struct Material {
   void Check(const std::string& where) const;
 };
 
-// Energy density (J/m³), first Piola–Kirchhoff stress P = ∂energy/∂F (Pa) and, if asked, the elasticity
-// ∂P/∂F with index 3·column + row in both directions (Pa).
+// Energy density (J/m³), first Piola–Kirchhoff stress P = ∂energy/∂F (Pa) and, if asked, the
+// elasticity ∂P/∂F with index 3·column + row in both directions (Pa).
 struct MaterialResponse {
   double energy = NAN;
   Eigen::Matrix3d P;

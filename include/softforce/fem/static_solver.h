@@ -48,17 +48,18 @@ struct SolveSummary {
   int iterations = 0;      // Newton steps
   int factorisations = 0;  // of the tangent
   int load_steps = 0;      // 1 unless the load had to be cut
-  double reached_share = 0;  // of the way from the old load to the new one at which it last converged
-  double last_step = NAN;    // m, largest movement of a node in the last iteration
+  double reached_share =
+      0;                   // of the way from the old load to the new one at which it last converged
+  double last_step = NAN;  // m, largest movement of a node in the last iteration
 
   bool ok() const { return status == Status::kConverged; }
   std::string BriefReport() const;
 };
 
-// How the body answers to small changes of the dead loads, at an equilibrium and with the commands of the
-// cables held: a cable commanded by displacement gives way in tension (paper eqs. 4 and 12).
+// How the body answers to small changes of the dead loads, at an equilibrium and with the commands
+// of the cables held: a cable commanded by displacement gives way in tension (paper eqs. 4 and 12).
 struct Sensitivity {
-  Eigen::MatrixXd du;        // 3N×k, m/N: K⁻¹ Hᵀ and its correction for the cables
+  Eigen::MatrixXd du;         // 3N×k, m/N: K⁻¹ Hᵀ and its correction for the cables
   Eigen::MatrixXd d_tension;  // cables×k
 };
 
@@ -66,11 +67,12 @@ struct Sensitivity {
 //
 //   f_int(x) + Σ_c t_c ∂ℓ_c/∂x = f + gravity      on the nodes that are free,
 //
-// with f_int from the cells' elastic law, t_c ≥ 0 the tension and ℓ_c the length of cable c; a cable
-// commanded by displacement d adds ℓ_c = ℓ_c(rest) − d or, where that would take a push, t_c = 0. Newton's
-// method with a line search on the potential energy (augmented by the cables' constraints); the tangent is
-// factorised by supernodal CHOLMOD on one thread and kept over iterations and calls while it still contracts.
-// If Newton fails the load is approached in smaller steps.
+// with f_int from the cells' elastic law, t_c ≥ 0 the tension and ℓ_c the length of cable c; a
+// cable commanded by displacement d adds ℓ_c = ℓ_c(rest) − d or, where that would take a push, t_c
+// = 0. Newton's method with a line search on the potential energy (augmented by the cables'
+// constraints); the tangent is factorised by supernodal CHOLMOD on one thread and kept over
+// iterations and calls while it still contracts. If Newton fails the load is approached in smaller
+// steps.
 //
 //   StaticSolver solver(body);
 //   Equilibrium state = solver.AtRest();
@@ -87,12 +89,12 @@ class StaticSolver {
   // The undeformed body without loads. With gravity, solve before use.
   Equilibrium AtRest() const;
 
-  // Moves `state` to the equilibrium under `load`. If it does not converge, `state` is the last equilibrium
-  // reached on the way.
+  // Moves `state` to the equilibrium under `load`. If it does not converge, `state` is the last
+  // equilibrium reached on the way.
   SolveSummary Solve(const LoadCase& load, Equilibrium* state);
 
-  // Solves for the k columns of `forces` (3N×k, N) at `state`. The tangent is factorised anew if any node
-  // stands further than `max_staleness` (m) from where it was last factorised.
+  // Solves for the k columns of `forces` (3N×k, N) at `state`. The tangent is factorised anew if
+  // any node stands further than `max_staleness` (m) from where it was last factorised.
   Sensitivity Solve(const Equilibrium& state, const Eigen::MatrixXd& forces, double max_staleness);
 
   // Elastic energy (J), for tests and reports.

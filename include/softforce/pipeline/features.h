@@ -9,23 +9,23 @@ namespace softforce::pipeline {
 
 // A point of a marker on the body.
 struct Feature {
-  int marker = -1;     // number in the scene's list
-  int corner = -1;     // of a tag: 0 … 3 for TL TR BR BL; −1: the centre of a dot
+  int marker = -1;  // number in the scene's list
+  int corner = -1;  // of a tag: 0 … 3 for TL TR BR BL; −1: the centre of a dot
   BodyPoint point;
   double diameter = 0;  // m, of a dot; 0 for a corner
 };
 
-// The feature points of the body's markers. Dots are known from the scene. How a tag is turned on the body is
-// not in the scene: it is read off the first frame in which two cameras see it, and its corners become features
-// from then on.
+// The feature points of the body's markers. Dots are known from the scene. How a tag is turned on
+// the body is not in the scene: it is read off the first frame in which two cameras see it, and its
+// corners become features from then on.
 class MarkerFeatures {
  public:
   MarkerFeatures(const scene::Scene& scene, const World& world);
 
   const std::vector<Feature>& features() const { return features_; }
 
-  // Looks for markers that are tags without corners yet, and places their corners. `u`: displacement of the
-  // nodes that the model expects in this frame.
+  // Looks for markers that are tags without corners yet, and places their corners. `u`:
+  // displacement of the nodes that the model expects in this frame.
   void PlaceTags(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
                  const std::vector<CameraDetections>& cameras, const Eigen::Matrix3Xd& u);
 

@@ -9,10 +9,10 @@
 namespace softforce::pipeline {
 
 struct ForceResult {
-  int candidate = -1;        // id in the scene
-  Eigen::Vector3d position;  // m, robot frame, on the deformed body
-  Eigen::Vector3d rest;      // m, the same material place on the body at rest
-  Eigen::Vector3d force;     // N
+  int candidate = -1;          // id in the scene
+  Eigen::Vector3d position;    // m, robot frame, on the deformed body
+  Eigen::Vector3d rest;        // m, the same material place on the body at rest
+  Eigen::Vector3d force;       // N
   Eigen::Matrix3d covariance;  // N²
 
   double NormSd() const;  // N, standard deviation of the force's norm
@@ -36,8 +36,8 @@ struct CableResult {
   double displacement = NAN;  // m, shortening
 };
 
-// All that is known of one frame. If the status is not kOk the forces are empty and the model is where it was
-// expected.
+// All that is known of one frame. If the status is not kOk the forces are empty and the model is
+// where it was expected.
 struct FrameResult {
   int frame = -1;
   double time_s = NAN;

@@ -20,7 +20,8 @@ struct PredictedFeature {
   double diameter = 0;         // m, of the dot; 0 for a corner
 };
 
-// What one camera saw of feature points. For dots the detections are anonymous; for tags they come with ids.
+// What one camera saw of feature points. For dots the detections are anonymous; for tags they come
+// with ids.
 struct CameraDetections {
   std::vector<vision::Dot> dots;
   std::vector<vision::Tag> tags;
@@ -41,20 +42,22 @@ struct FeatureObservation {
 struct ObserveOptions {
   allocation::AllocationOptions allocation;
   camera::TriangulationOptions triangulation;
-  // What a dot's or corner's covariance from the picture leaves out: lens model, compression, print. px.
+  // What a dot's or corner's covariance from the picture leaves out: lens model, compression,
+  // print. px.
   double pixel_floor = 0.03;
   double min_facing = 0.1;      // cosine between a marker's normal and the way to the camera
   double size_tolerance = 1.7;  // a dot's picture may be this much larger or smaller than expected
 };
 
-// Which detection in which camera belongs to which feature, by prediction, gate and global assignment.
-// `pixels[feature]` are the sightings; for dots, corrected from the centroid of the disc's picture to the
-// projection of its centre.
+// Which detection in which camera belongs to which feature, by prediction, gate and global
+// assignment. `pixels[feature]` are the sightings; for dots, corrected from the centroid of the
+// disc's picture to the projection of its centre.
 struct FeatureSightings {
   std::vector<std::vector<camera::PixelObservation>> pixels;
 };
 
-// `threshold_displacement`: the paper's threshold, m; a detection further from its prediction is not it.
+// `threshold_displacement`: the paper's threshold, m; a detection further from its prediction is
+// not it.
 FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
                               const std::vector<PredictedFeature>& predicted,
                               const std::vector<CameraDetections>& cameras,

@@ -17,13 +17,15 @@ struct RunOptions {
   std::map<std::string, std::string> sources;  // camera → file; instead of those in the scene
   int first_frame = 0;
   int end_frame = std::numeric_limits<int>::max();  // one past the last
-  int registration_frames = 10;  // that are searched for base fiducials before the first frame is estimated
-  bool overlay = true;           // write overlay.mp4
-  bool vtu = false;              // write a ParaView series
+  int registration_frames =
+      10;               // that are searched for base fiducials before the first frame is estimated
+  bool overlay = true;  // write overlay.mp4
+  bool vtu = false;     // write a ParaView series
   bool show_progress = true;
   int overlay_width = 1920;  // px, of all cameras side by side
   TrackerOptions tracker;
-  const std::atomic<bool>* stop = nullptr;  // set from outside: end after this frame, with complete files
+  const std::atomic<bool>* stop =
+      nullptr;  // set from outside: end after this frame, with complete files
 
   void Check() const;  // throws InputError naming the option
 };
@@ -44,10 +46,11 @@ struct RunReport {
   std::string FullReport() const;   // with a table of the last frame's forces
 };
 
-// The main job: scene.yaml in, forces out. Reads the recording that the scene names, finds where the rig stands,
-// estimates the forces in every frame, and writes forces.csv, markers.csv, actuation.csv, summary.json and
-// overlay.mp4. Files show up under their names only when they are complete.
-// Throws InputError for input that cannot be used, before anything is written where possible.
+// The main job: scene.yaml in, forces out. Reads the recording that the scene names, finds where
+// the rig stands, estimates the forces in every frame, and writes forces.csv, markers.csv,
+// actuation.csv, summary.json and overlay.mp4. Files show up under their names only when they are
+// complete. Throws InputError for input that cannot be used, before anything is written where
+// possible.
 RunReport Run(const std::filesystem::path& scene_file, const RunOptions& options = {});
 
 }  // namespace softforce::pipeline

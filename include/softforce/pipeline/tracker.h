@@ -12,22 +12,23 @@ namespace softforce::pipeline {
 struct TrackerOptions {
   estimation::EstimatorOptions estimator;
   ObserveOptions observe;
-  // How far the marker that moves most may go between two frames by a change of one force (standard deviation),
-  // as a share of the smallest marker spacing: sets the forces' random walk, and through the compliance the
-  // gates, which are long where the body is soft.
+  // How far the marker that moves most may go between two frames by a change of one force (standard
+  // deviation), as a share of the smallest marker spacing: sets the forces' random walk, and
+  // through the compliance the gates, which are long where the body is soft.
   double motion_share = 0.25;
-  double prediction_floor = 0.3e-3;   // m, standard deviation of a prediction at the least
-  double threshold_displacement = 1;  // the paper's threshold, as a share of the smallest marker spacing
+  double prediction_floor = 0.3e-3;  // m, standard deviation of a prediction at the least
+  double threshold_displacement =
+      1;  // the paper's threshold, as a share of the smallest marker spacing
 
   void Check() const;  // throws InputError naming the option
 };
 
-// From detections to forces, frame after frame: predicts the features from the body's last state and the new
-// commands, allocates detections to them, locates them, and estimates the forces.
+// From detections to forces, frame after frame: predicts the features from the body's last state
+// and the new commands, allocates detections to them, locates them, and estimates the forces.
 class Tracker {
  public:
-  // `rig_covariance`: of a twist xi in the rig frame, T_rig_robot = ExpSe3(xi) · estimate. Scene, world and rig must
-  // outlive the tracker.
+  // `rig_covariance`: of a twist xi in the rig frame, T_rig_robot = ExpSe3(xi) · estimate. Scene,
+  // world and rig must outlive the tracker.
   Tracker(const scene::Scene& scene, const World& world, const camera::Rig& rig,
           const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance,
           const TrackerOptions& options = {});

@@ -26,7 +26,8 @@ struct World {
   std::vector<estimation::ForceSite> sites;  // one per candidate of the scene
   std::vector<BodyPoint> site_points;        // where the candidates are
   std::vector<BodyPoint> markers;            // centres of the scene's markers
-  double marker_spacing = 0;                 // m, the smallest distance between two markers, at most the body's size
+  double marker_spacing =
+      0;  // m, the smallest distance between two markers, at most the body's size
 
   const mesh::TetMesh& mesh() const { return solver->body().mesh; }
 };
@@ -34,13 +35,13 @@ struct World {
 // A place of the scene may be this far off the meshed surface, m.
 inline constexpr double kSurfaceTolerance = 3e-3;
 
-// The surface point closest to a place of the scene. Throws InputError naming `where` if it lies further than
-// kSurfaceTolerance off the surface.
+// The surface point closest to a place of the scene. Throws InputError naming `where` if it lies
+// further than kSurfaceTolerance off the surface.
 BodyPoint PlaceOnSurface(const mesh::Surface& surface, const Eigen::Matrix3Xd& X,
                          const Eigen::Vector3d& place, const std::string& where);
 
-// Reads the scene's mesh and puts the body together. Throws InputError for a mesh that cannot be used, a region
-// without material, nothing fixed, or a marker, candidate or cable off the surface.
+// Reads the scene's mesh and puts the body together. Throws InputError for a mesh that cannot be
+// used, a region without material, nothing fixed, or a marker, candidate or cable off the surface.
 World BuildWorld(const scene::Scene& scene);
 
 // The commands of the scene's cables at a time.

@@ -13,7 +13,8 @@
 
 namespace softforce::scene {
 
-// The contents of a scene.yaml, in SI units, with every path made absolute. Places are in the robot frame.
+// The contents of a scene.yaml, in SI units, with every path made absolute. Places are in the robot
+// frame.
 
 struct MeshFile {
   std::filesystem::path file;
@@ -23,7 +24,7 @@ struct MeshFile {
 
 // Nodes that do not move: those in a box, or those of a named surface group.
 struct FixedRegion {
-  std::string group;                                                      // empty: the box
+  std::string group;                                                            // empty: the box
   Eigen::Vector3d box_min = Eigen::Vector3d::Constant(NAN), box_max = box_min;  // m
 };
 
@@ -34,16 +35,18 @@ struct Actuator {
   std::string name;
   ActuatorType type = ActuatorType::kCable;
   ActuatorInput input = ActuatorInput::kDisplacement;
-  std::vector<Eigen::Vector3d> points;  // m, on the body: attachment first, then via points to the guide
+  std::vector<Eigen::Vector3d>
+      points;  // m, on the body: attachment first, then via points to the guide
   Eigen::Vector3d guide = Eigen::Vector3d::Constant(NAN);  // m, fixed in space
-  double patch = 0;                     // m, diameter over which the attachment is spread
-  std::string group;                    // pressure: the surface group it acts on
+  double patch = 0;   // m, diameter over which the attachment is spread
+  std::string group;  // pressure: the surface group it acts on
 };
 
 // Inputs of the actuators over time; held before the first row and after the last.
 struct ActuationTable {
   std::vector<double> time_s;  // ascending
-  Eigen::MatrixXd inputs;      // rows like time_s, a column per actuator in the scene's order; N, m or Pa
+  Eigen::MatrixXd
+      inputs;  // rows like time_s, a column per actuator in the scene's order; N, m or Pa
 
   Eigen::VectorXd At(double time) const;  // linear between rows
 };
@@ -99,9 +102,9 @@ struct Scene {
   Cameras cameras;
 };
 
-// Reads and checks a scene and its actuation table. Throws InputError naming file, key and line on anything
-// it does not understand: an unknown key, a missing one, a quantity without unit or of the wrong kind, an id
-// given twice, an actuator without a column in the table, …
+// Reads and checks a scene and its actuation table. Throws InputError naming file, key and line on
+// anything it does not understand: an unknown key, a missing one, a quantity without unit or of the
+// wrong kind, an id given twice, an actuator without a column in the table, …
 Scene LoadScene(const std::filesystem::path& file);
 
 }  // namespace softforce::scene
