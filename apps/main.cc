@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <exception>
 #include <vector>
 
 #include "commands/commands.h"
@@ -8,6 +9,7 @@
 
 namespace {
 
+constexpr int kNotUsable = 1;
 constexpr int kBadInput = 2;
 
 int RunProgram(int argc, char** argv) {
@@ -34,5 +36,8 @@ int main(int argc, char** argv) {
   } catch (const softforce::base::InputError& error) {
     fmt::print(stderr, "softforce: {}\n", error.what());
     return kBadInput;
+  } catch (const std::exception& error) {  // out of memory, a broken library: not the user's input
+    fmt::print(stderr, "softforce: unexpected: {}\n", error.what());
+    return kNotUsable;
   }
 }

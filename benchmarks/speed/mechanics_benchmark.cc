@@ -101,7 +101,8 @@ void EstimatedFrame(benchmark::State& state) {
   }
   fem::StaticSolver solver(sheet.body, "sheet");
   const Eigen::Matrix3Xd down = -Eigen::Vector3d::UnitZ();
-  estimation::ForceEstimator estimator(&solver, {{sheet.loads[0], down}, {sheet.loads[1], down}});
+  estimation::ForceEstimator estimator(&solver,
+                                       {{"0", sheet.loads[0], down}, {"1", sheet.loads[1], down}});
   estimator.Estimate(frames[0], {});
   int step = 0;
   for (auto _ : state) {

@@ -1,5 +1,5 @@
-// Cost of detection on a picture of the shipped recording (1280×1024, 14 dots, 4 tags), beside the yardstick: one
-// OpenCV Gaussian blur of the same picture. Compare ratios, not milliseconds.
+// Cost of detection on a picture of the shipped recording (1280×1024, 14 dots, 4 tags), beside the
+// yardstick: one OpenCV Gaussian blur of the same picture. Compare ratios, not milliseconds.
 //
 //   build/release/benchmarks/vision_benchmark
 #include <benchmark/benchmark.h>

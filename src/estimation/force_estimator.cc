@@ -49,8 +49,10 @@ void EstimatorOptions::Check() const {
   const auto require = [](bool holds, const char* option, const char* rule) {
     if (!holds) throw base::InputError(std::string("estimator option ") + option, rule);
   };
-  require(common_model_error >= 0, "common_model_error", "must be 0 or more");
-  require(local_model_error >= 0, "local_model_error", "must be 0 or more");
+  require(common_model_error >= 0 && common_model_error < 1, "common_model_error",
+          "must be at least 0 and below 1");
+  require(local_model_error >= 0 && local_model_error < 1, "local_model_error",
+          "must be at least 0 and below 1");
   require(loss_scale > 0, "loss_scale", "must be greater than 0");
   require(rejection_probability > 0 && rejection_probability < 1, "rejection_probability",
           "must lie between 0 and 1");
@@ -115,17 +117,28 @@ fem::LoadCase ForceEstimator::LoadOf(const Eigen::VectorXd& intensity,
 }
 
 fem::SolveSummary ForceEstimator::Advance(const std::vector<fem::CableCommand>& commands) {
-  return solver_->Solve(LoadOf(intensity_, commands), &state_);
+  fem::SolveSummary summary = solver_->Solve(LoadOf(intensity_, commands), &state_);
+  if (summary.ok() && !RefreshCompliance()) {
+    summary.status = fem::SolveSummary::Status::kNotConverged;
+  }
+  return summary;
 }
 
-Eigen::Matrix3Xd ForceEstimator::Compliance(const mesh::NodalWeights& at) {
+bool ForceEstimator::RefreshCompliance() {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> taut = state_.tension.array() > 0;
   const bool fresh =
-      compliance_u_.cols() == state_.u.cols() &&
+      compliance_u_.cols() == state_.u.cols() && (taut == compliance_taut_).all() &&
       (state_.u - compliance_u_).colwise().norm().maxCoeff() <= options_.max_staleness;
-  if (!fresh) {
-    compliance_ = solver_->Solve(state_, H_f_, options_.max_staleness).du;
-    compliance_u_ = state_.u;
-  }
+  if (fresh) return true;
+  fem::Sensitivity sensitivity = solver_->Solve(state_, H_f_, options_.max_staleness);
+  if (!sensitivity.ok) return false;
+  compliance_ = std::move(sensitivity.du);
+  compliance_u_ = state_.u;
+  compliance_taut_ = taut;
+  return true;
+}
+
+Eigen::Matrix3Xd ForceEstimator::Compliance(const mesh::NodalWeights& at) const {
   Eigen::Matrix3Xd W = Eigen::Matrix3Xd::Zero(3, num_components());
   for (size_t i = 0; i < at.nodes.size(); ++i) {
     W += at.weights[i] * compliance_.middleRows<3>(3 * at.nodes[i]);
@@ -201,7 +214,9 @@ ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observati
     const double fitted = LargestDisplacement(observations);
     const bool settled = std::abs(fitted - scale) <= kScaleTolerance * std::max(fitted, scale);
     scale = fitted;
-    if (!estimate.ok() || settled) break;
+    // Weighed as if the model were exact, right observations after a jump look impossible.
+    const bool usable = estimate.ok() || estimate.status == ForceEstimate::Status::kInconsistent;
+    if (!usable || settled) break;
   }
   if (!estimate.ok()) {
     state_ = before;
@@ -232,9 +247,11 @@ void ForceEstimator::FitAndReject(std::vector<WhitenedObservation> used, double 
     const FitResult fit = FitParameters(used, parameters, prior, body, options_);
     estimate->iterations += fit.iterations;
     const Eigen::VectorXd found = fit.parameters.head(n);
-    if (!fit.converged || (found != state_intensity_ && !body.move(found))) {
+    const bool reached = fit.converged && (found == state_intensity_ || body.move(found));
+    if (!reached) {
       estimate->status = ForceEstimate::Status::kNotConverged;
-      estimate->reason = fit.message;
+      estimate->reason =
+          fit.converged ? "the body found no equilibrium under the forces" : fit.message;
       return;
     }
     parameters = fit.parameters;
@@ -283,18 +300,28 @@ int ForceEstimator::Assess(const std::vector<WhitenedObservation>& used, const O
   return worst;
 }
 
+std::string ForceEstimator::SitesIn(const Eigen::VectorXd& combination) const {
+  constexpr double kShare = 0.1;  // of a unit vector: smaller parts do not matter
+  std::string names;
+  for (int s = 0; s < static_cast<int>(sites_.size()); ++s) {
+    const auto part = combination.segment(FirstComponent(s), sites_[s].directions.cols());
+    if (part.norm() > kShare) names += (names.empty() ? "candidate " : ", ") + sites_[s].name;
+  }
+  return names;
+}
+
 void ForceEstimator::Conclude(const Eigen::MatrixXd& J, const Eigen::VectorXd& parameters,
                               ForceEstimate* estimate) const {
   const int n = num_components();
   // What the observations say of the forces by themselves, the offset being known.
   const Eigen::MatrixXd J_forces = J.topLeftCorner(J.rows() - 6, n);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(J_forces.transpose() * J_forces,
-                                                                Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(J_forces.transpose() * J_forces);
   const double weakest = std::sqrt(std::max(0.0, spectrum.eigenvalues()(0)));
   const double strongest = std::sqrt(spectrum.eigenvalues()(n - 1));
   if (!(weakest > options_.min_singular_ratio * strongest)) {
     estimate->status = ForceEstimate::Status::kUnobservable;
-    estimate->reason = "the markers in view cannot tell the forces apart";
+    estimate->reason = "the markers in view cannot tell apart the forces at " +
+                       SitesIn(spectrum.eigenvectors().col(0));
     return;
   }
   // Newtons and metres differ by orders of magnitude: scale the columns before inverting.
@@ -313,21 +340,27 @@ BodyResponse ForceEstimator::Response(const std::vector<fem::CableCommand>& comm
   BodyResponse body;
   body.move = [this, commands, estimate](const Eigen::VectorXd& intensity) {
     if (!intensity.allFinite()) return false;
-    fem::Equilibrium trial = state_;
     // A small change starts from the linear answer; Newton's method does the rest. Over a large one
     // the linear answer stretches what should turn, and the old shape is the better start.
+    fem::Equilibrium trial = state_;
+    bool predicted = false;
     if (compliance_u_.cols() == state_.u.cols()) {
       const Eigen::Matrix3Xd du =
           (compliance_ * (intensity - state_intensity_)).reshaped(3, trial.u.cols());
-      if (du.colwise().norm().maxCoeff() <= options_.max_staleness) trial.u += du;
+      predicted = du.colwise().norm().maxCoeff() <= options_.max_staleness;
+      if (predicted) trial.u += du;
     }
-    const fem::SolveSummary summary = solver_->Solve(LoadOf(intensity, commands), &trial);
+    const fem::LoadCase load = LoadOf(intensity, commands);
+    fem::SolveSummary summary = solver_->Solve(load, &trial);
+    if (!summary.ok() && predicted) {
+      trial = state_;
+      summary = solver_->Solve(load, &trial);
+    }
     estimate->factorisations += summary.factorisations;
-    if (summary.ok()) {
-      state_ = std::move(trial);
-      state_intensity_ = intensity;
-    }
-    return summary.ok();
+    if (!summary.ok()) return false;
+    state_ = std::move(trial);
+    state_intensity_ = intensity;
+    return RefreshCompliance();
   };
   body.position = [this](const mesh::NodalWeights& at) -> Eigen::Vector3d {
     return at.Apply(solver_->body().mesh.nodes) + at.Apply(state_.u);

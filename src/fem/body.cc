@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "softforce/base/input_error.h"
 
 namespace softforce::fem {
 namespace {
+
+constexpr double kShortestCable = 1e-6;  // m
 
 // Which part each node belongs to: parts are sets of nodes connected through cells.
 std::vector<int> Parts(const mesh::TetMesh& mesh) {
@@ -41,12 +45,29 @@ bool SpanAPlane(const Eigen::Matrix3Xd& points) {
 void Body::Check(const std::string& where) const {
   for (const Material& material : materials) material.Check(where + ": material");
 
+  const std::set<int> fixed(fixed_nodes.begin(), fixed_nodes.end());
+  if (static_cast<int>(fixed.size()) == mesh.num_nodes()) {
+    throw base::InputError(where + ": fixed", "holds every node of the mesh: nothing can move");
+  }
+  for (const Cable& cable : cables) {
+    const auto is_fixed = [&](int node) { return fixed.count(node) > 0; };
+    for (const mesh::NodalWeights& point : cable.points) {
+      if (!std::all_of(point.nodes.begin(), point.nodes.end(), is_fixed)) continue;
+      throw base::InputError(fmt::format("{}: cable \"{}\"", where, cable.name),
+                             "has a point where the body is fixed, so that it cannot pull there");
+    }
+    if ((cable.points.back().Apply(mesh.nodes) - cable.guide).norm() < kShortestCable) {
+      throw base::InputError(fmt::format("{}: cable \"{}\"", where, cable.name),
+                             "ends where its guide is, so that it has no direction");
+    }
+  }
+
   const std::vector<int> part = Parts(mesh);
   for (int node = 0; node < mesh.num_nodes(); ++node) {
     if (part[node] != node) continue;  // a part is named by one of its nodes
     std::vector<int> held;
-    for (const int fixed : fixed_nodes) {
-      if (part[fixed] == node) held.push_back(fixed);
+    for (const int held_node : fixed_nodes) {
+      if (part[held_node] == node) held.push_back(held_node);
     }
     if (SpanAPlane(mesh.nodes(Eigen::all, held))) continue;
     const Eigen::Vector3d at_mm = 1000 * mesh.nodes.col(node);

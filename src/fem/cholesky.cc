@@ -11,7 +11,7 @@ namespace softforce::fem {
 namespace {
 
 // While it lives, OpenMP regions entered by this thread run on this thread alone (a level limit of
-// 0 outranks the num_threads clauses inside CHOLMOD), and OpenBLAS starts no helpers.
+// 0 outranks the num_threads clauses inside CHOLMOD). OpenBLAS is held to one thread for good.
 class OneThread {
  public:
   OneThread() : levels_(omp_get_max_active_levels()) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kNear = 0.58541019662496852;
 constexpr double kFar = 0.13819660112501052;
 
-// Values and derivatives of the shape functions at barycentric coordinates b. Derivatives are by
+// Derivatives of the shape functions at barycentric coordinates b. Derivatives are by
 // b1, b2, b3 (b0 = 1 − b1 − b2 − b3), a column per node.
 Eigen::Matrix3Xd ShapeDerivatives(int nodes, const Eigen::Vector4d& b) {
   Eigen::Matrix<double, 3, 4> db;  // of b0 … b3 by b1 b2 b3

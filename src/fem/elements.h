@@ -31,7 +31,7 @@ class Elements {
   // Σ over cells, J.
   double ShearModulusTimesVolume() const;
 
-  // Σ over cells of density · volume · shape function: mass per node, kg per unit density.
+  // Σ over cells of volume · shape function: the volume that hangs on each node, m³.
   Eigen::VectorXd NodalVolumes(int num_nodes) const;
 
  private:

@@ -246,6 +246,7 @@ bool StaticSolver::State::Newton(const LoadCase& load, Equilibrium* state, Solve
   const double tolerance = options.step_tolerance * diagonal;
   double previous_move = std::numeric_limits<double>::infinity();
   Balance balance = Evaluate(load, state->u);
+  if (!std::isfinite(balance.energy)) return false;  // a cell is inside out
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const bool fresh = !factor_valid;
     if (fresh) {
@@ -266,7 +267,7 @@ bool StaticSolver::State::Newton(const LoadCase& load, Equilibrium* state, Solve
     state->u += share * step.du;
     state->tension += share * (step.tension - state->tension);
     summary->last_step = move;
-    if (move <= tolerance) return true;
+    if (share == 1 && move <= tolerance) return true;
     if (share < 1 || move > options.stale_contraction * previous_move) factor_valid = false;
     previous_move = move;
   }
@@ -340,8 +341,9 @@ SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
 Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd& forces,
                                 double max_staleness) {
   State& s = *state_;
+  Sensitivity sensitivity;
   if (!s.factor_valid || LargestMove(state.u - s.factor_u) > max_staleness) {
-    s.Factorise(state.u, state.tension);
+    if (!s.Factorise(state.u, state.tension)) return sensitivity;
   }
   std::vector<int> held;
   for (int c = 0; c < s.num_cables(); ++c) {
@@ -356,7 +358,7 @@ Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd&
   Eigen::MatrixXd solved = rhs;
   s.cholesky.SolveInPlace(&solved);
 
-  Sensitivity sensitivity;
+  sensitivity.ok = true;
   sensitivity.d_tension = Eigen::MatrixXd::Zero(s.num_cables(), k);
   if (m > 0) {  // W_aa⁻¹ W_af, eq. 4 with the cables' displacement held
     const Eigen::MatrixXd W_aa = rhs.rightCols(m).transpose() * solved.rightCols(m);

@@ -9,11 +9,16 @@
 namespace softforce::pipeline {
 namespace {
 
+// The tag of an id; nothing if a second one like it is in the picture, since one of the two is a
+// decoy.
 const vision::Tag* FindTag(const CameraDetections& camera, const scene::Markers& markers, int id) {
+  const vision::Tag* found = nullptr;
   for (const vision::Tag& tag : camera.tags) {
-    if (tag.id == id && tag.family == markers.family) return &tag;
+    if (tag.id != id || tag.family != markers.family) continue;
+    if (found != nullptr) return nullptr;
+    found = &tag;
   }
-  return nullptr;
+  return found;
 }
 
 }  // namespace
@@ -29,7 +34,10 @@ MarkerFeatures::MarkerFeatures(const scene::Scene& scene, const World& world)
 
 void MarkerFeatures::PlaceTags(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
                                const std::vector<CameraDetections>& cameras,
-                               const Eigen::Matrix3Xd& u) {
+                               const Eigen::Matrix3Xd& u, double threshold,
+                               const ObserveOptions& options) {
+  const Eigen::Matrix2d floor =
+      options.pixel_floor * options.pixel_floor * Eigen::Matrix2d::Identity();
   for (int m = 0; m < static_cast<int>(placed_.size()); ++m) {
     if (placed_[m]) continue;
     std::array<std::vector<camera::PixelObservation>, 4> pixels;
@@ -37,17 +45,24 @@ void MarkerFeatures::PlaceTags(const camera::Rig& rig, const Eigen::Isometry3d& 
       const vision::Tag* tag = FindTag(cameras[c], scene_.markers, scene_.markers.points[m].id);
       if (tag == nullptr) continue;
       for (int i = 0; i < 4; ++i) {
-        pixels[i].push_back({c, tag->corners[i], tag->corner_covariances[i]});
+        pixels[i].push_back({c, tag->corners[i], tag->corner_covariances[i] + floor});
       }
     }
     std::array<Eigen::Vector3d, 4> corner;
     bool found = true;
     for (int i = 0; i < 4 && found; ++i) {
       const camera::Triangulation at = camera::Triangulate(rig, pixels[i]);
-      found = at.ok() || at.status == camera::Triangulation::Status::kInconsistent;
+      found = at.ok();
       if (found) corner[i] = T_rig_robot.inverse() * at.p_rig;
     }
-    if (found) PlaceTag(m, corner[0] + corner[1] - corner[2] - corner[3], u);
+    if (!found) continue;
+    // A tag of that id somewhere else is not the one on the body.
+    const Eigen::Vector3d middle = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
+    const BodyPoint& place = world_.markers[m];
+    const Eigen::Vector3d expected =
+        place.weights.Apply(world_.mesh().nodes) + place.weights.Apply(u) + place.offset;
+    if ((middle - expected).norm() > threshold) continue;
+    PlaceTag(m, corner[0] + corner[1] - corner[2] - corner[3], u);
   }
 }
 
@@ -78,7 +93,7 @@ FeatureSightings AllocateTagCorners(const scene::Markers& markers, const camera:
                                     const std::vector<Feature>& features,
                                     const std::vector<PredictedFeature>& predicted,
                                     const std::vector<CameraDetections>& cameras,
-                                    const ObserveOptions& options) {
+                                    double threshold_displacement, const ObserveOptions& options) {
   const double gate = geometry::ChiSquareQuantile(options.allocation.gate_probability, 2);
   const double floor2 = options.pixel_floor * options.pixel_floor;
   FeatureSightings sightings;
@@ -98,6 +113,8 @@ FeatureSightings AllocateTagCorners(const scene::Markers& markers, const camera:
       const Eigen::Matrix<double, 2, 3> J = at.jacobian * T_camera_robot.linear();
       const Eigen::Matrix2d S = J * predicted[f].covariance * J.transpose() + noise;
       const Eigen::Vector2d nu = tag->corners[i] - at.pixel;
+      const double depth = (T_camera_robot * predicted[f].position).z();
+      if (nu.norm() > threshold_displacement * camera.lens.fx / depth) continue;
       if (!(nu.dot(S.inverse() * nu) <= gate)) continue;
       sightings.pixels[f].push_back({c, tag->corners[i], noise});
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softforce/base/input_error.h"
+
 namespace softforce::pipeline {
 namespace {
 
@@ -85,11 +87,15 @@ FeatureObservation FromOneCamera(const camera::Rig& rig, const Eigen::Isometry3d
 }
 
 FeatureObservation FromCameras(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
+                               const Eigen::Vector3d& predicted,
                                const std::vector<camera::PixelObservation>& pixels,
                                const camera::TriangulationOptions& options) {
   FeatureObservation observation;
   const camera::Triangulation found = camera::Triangulate(rig, pixels, options);
   observation.cameras = static_cast<int>(pixels.size());
+  if (found.status == camera::Triangulation::Status::kLowParallax) {
+    return FromOneCamera(rig, T_rig_robot, predicted, pixels.front());  // they see alike
+  }
   if (!found.ok()) {
     observation.status = FeatureObservation::Status::kInconsistent;
     return observation;
@@ -104,6 +110,18 @@ FeatureObservation FromCameras(const camera::Rig& rig, const Eigen::Isometry3d& 
 }
 
 }  // namespace
+
+void ObserveOptions::Check() const {
+  allocation.Check();
+  triangulation.Check();
+  const auto require = [](bool holds, const char* option, const char* rule) {
+    if (!holds) throw base::InputError(std::string("observe option ") + option, rule);
+  };
+  require(pixel_floor > 0 && std::isfinite(pixel_floor), "pixel_floor",
+          "must be greater than 0 px");
+  require(min_facing >= 0 && min_facing < 1, "min_facing", "must be at least 0 and below 1");
+  require(size_tolerance > 1, "size_tolerance", "must be greater than 1");
+}
 
 FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
                               const std::vector<PredictedFeature>& predicted,
@@ -158,7 +176,8 @@ std::vector<FeatureObservation> Locate(const camera::Rig& rig, const Eigen::Isom
     } else if (pixels.size() == 1) {
       observations.push_back(FromOneCamera(rig, T_rig_robot, predicted[f].position, pixels[0]));
     } else {
-      observations.push_back(FromCameras(rig, T_rig_robot, pixels, options.triangulation));
+      observations.push_back(
+          FromCameras(rig, T_rig_robot, predicted[f].position, pixels, options.triangulation));
     }
   }
   return observations;

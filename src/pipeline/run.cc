@@ -38,6 +38,8 @@ void RefuseLiveSources(const scene::Scene& scene,
                        const std::vector<vision::Recording::Source>& sources) {
   for (const vision::Recording::Source& source : sources) {
     const std::string name = source.file.string();
+    std::error_code ignored;
+    if (std::filesystem::exists(source.file, ignored) && name.rfind("/dev/", 0) != 0) continue;
     if (name.find("://") == std::string::npos && name.find('!') == std::string::npos &&
         name.rfind("/dev/", 0) != 0) {
       continue;
@@ -61,6 +63,8 @@ void RefuseUnknownLocations(const scene::Scene& scene) {
 // amplified.
 double IndexW(const World& world) {
   estimation::ForceEstimator estimator(world.solver.get(), world.sites);
+  const std::vector<fem::CableCommand> no_tension(world.solver->body().cables.size());
+  if (!estimator.Advance(no_tension).ok()) return NAN;
   Eigen::MatrixXd W(3 * world.markers.size(), estimator.num_components());
   for (size_t m = 0; m < world.markers.size(); ++m) {
     W.middleRows<3>(3 * static_cast<Eigen::Index>(m)) =
@@ -74,11 +78,24 @@ double IndexW(const World& world) {
 // Removes what an earlier run left under the same names, so that a run that ends early cannot be
 // mistaken for a complete one.
 void ClearOldResults(const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> old;
   for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json",
                            "overlay.mp4", "results.pvd"}) {
-    std::filesystem::remove(out / name);
+    old.push_back(out / name);
   }
-  std::filesystem::remove_all(out / "vtu");
+  std::error_code ignored;  // a folder that is not there has no old frames
+  for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("frame_", 0) == 0 && entry.path().extension() == ".vtu")
+      old.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : old) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    if (!error) continue;
+    throw base::InputError(file.string(), "an older result cannot be removed: " + error.message(),
+                           "Choose another folder with --out.");
+  }
 }
 
 void MakeFolder(const std::filesystem::path& out) {
@@ -132,14 +149,22 @@ class Job {
   StageClock clock_;
   RunReport report_;
   std::map<std::string, int> frame_statuses_, marker_statuses_;
-  std::vector<double> reduced_chi2_;  // of each frame
+  bool stopped_ = false;              // from outside, before the end
+  std::vector<double> reduced_chi2_;  // of each frame with forces
 };
 
 vision::Recording Job::OpenRecording() const {
   RefuseUnknownLocations(scene_);
   RefuseLiveSources(scene_, sources_);
   RefuseToOverwriteInputs();
-  return vision::Recording(rig_, sources_);
+  vision::Recording recording(rig_, sources_);
+  const int announced = recording.announced_frames();
+  if (announced > 0 && options_.first_frame >= announced) {
+    throw base::InputError(
+        "--frames", fmt::format("starts at frame {}, but the recording has {} frames, 0 to {}",
+                                options_.first_frame, announced, announced - 1));
+  }
+  return recording;
 }
 
 std::vector<std::filesystem::path> Job::Inputs() const {
@@ -150,9 +175,10 @@ std::vector<std::filesystem::path> Job::Inputs() const {
 }
 
 void Job::RefuseToOverwriteInputs() const {
-  const auto out = std::filesystem::weakly_canonical(options_.out);
+  std::error_code ignored;  // a path that cannot be resolved is compared as it is
+  const auto out = std::filesystem::weakly_canonical(options_.out, ignored);
   for (const std::filesystem::path& input : Inputs()) {
-    const auto folder = std::filesystem::weakly_canonical(input).parent_path();
+    const auto folder = std::filesystem::weakly_canonical(input, ignored).parent_path();
     if (folder != out && folder != out / "vtu") continue;
     throw base::InputError(
         "--out " + options_.out.string(),
@@ -176,7 +202,7 @@ FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
     report_.warnings.push_back(fmt::format("frame {}: {}: {}", result.frame,
                                            estimation::Name(result.status), result.reason));
   }
-  if (result.degrees_of_freedom > 0) {
+  if (!result.forces.empty() && result.degrees_of_freedom > 0) {
     reduced_chi2_.push_back(result.chi2 / result.degrees_of_freedom);
   }
   return result;
@@ -185,7 +211,9 @@ FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
 void Job::ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series) {
   const int last = std::min(options_.end_frame, recording_.announced_frames());
   base::Progress progress("frames", last - options_.first_frame);
-  while (options_.stop == nullptr || !*options_.stop) {
+  while (true) {
+    stopped_ = options_.stop != nullptr && *options_.stop;
+    if (stopped_) break;
     const auto frame = clock_.Measure("decode", [&] { return recording_.Next(); });
     if (!frame || frame->frame >= options_.end_frame) break;
     if (frame->frame < options_.first_frame) continue;
@@ -205,18 +233,17 @@ void Job::ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* 
 }
 
 void Job::Judge() {
-  const bool stopped = options_.stop != nullptr && *options_.stop;
   const int untold = report_.frames - report_.usable_frames - kMaxFrameWarnings;
   if (untold > 0) report_.warnings.push_back(fmt::format("{} more frames without forces", untold));
   if (!recording_.truncation().empty()) report_.warnings.push_back(recording_.truncation());
-  if (stopped) report_.warnings.push_back("stopped before the end of the recording");
-  if (report_.frames == 0) report_.warnings.push_back("no frame was in the range asked for");
+  if (stopped_) report_.warnings.push_back("stopped before the end of the recording");
+  if (report_.frames == 0) report_.warnings.push_back("no frame was processed");
   const bool mostly = 2 * report_.usable_frames > report_.frames;
   if (!mostly && report_.frames > 0) {
     report_.warnings.push_back(fmt::format("forces were found in only {} of {} frames",
                                            report_.usable_frames, report_.frames));
   }
-  report_.usable = mostly && !stopped && recording_.truncation().empty();
+  report_.usable = mostly && !stopped_ && recording_.truncation().empty();
 }
 
 void Job::WriteSummaryFile() {
@@ -236,7 +263,7 @@ void Job::LogSetUp() const {
            world_.markers.size(), world_.sites.size(), scene_.actuators.size());
   if (!standing_.from_fiducials) return;
   const vision::RigPose& pose = *standing_.from_fiducials;
-  log.info("the rig stands still: {} corners of fiducials fit to {:.3f} px", pose.num_points,
+  log.info("the rig is placed by {} corners of fiducials, which fit to {:.3f} px", pose.num_points,
            pose.rms_px);
 }
 

@@ -81,7 +81,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
         {{"file", input.filename().string()}, {"sha256", base::Sha256OfFile(input)}});
   }
   PendingTable out(file, "");
-  out.stream() << json.dump(2) << '\n';
+  out.stream() << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   out.Commit();
 }
 

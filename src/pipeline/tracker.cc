@@ -8,6 +8,8 @@
 namespace softforce::pipeline {
 
 void TrackerOptions::Check() const {
+  estimator.Check();
+  observe.Check();
   if (!(motion_share > 0)) {
     throw base::InputError("tracker: motion_share", "must be greater than 0");
   }
@@ -60,11 +62,10 @@ std::vector<PredictedFeature> Tracker::Predict() {
   const double softest = largest.size() > 0 ? largest.maxCoeff() : 0;
   // A component that moves no marker must not be given an endless walk.
   const Eigen::VectorXd walk = motion / largest.array().max(1e-3 * softest);  // N per frame
-  Eigen::MatrixXd covariance = intensity_covariance_;
-  covariance.diagonal() += walk.cwiseAbs2();
+  if (softest > 0) intensity_covariance_.diagonal() += walk.cwiseAbs2();
   const double floor2 = options_.prediction_floor * options_.prediction_floor;
   for (size_t f = 0; f < predicted.size(); ++f) {
-    predicted[f].covariance = compliance[f] * covariance * compliance[f].transpose() +
+    predicted[f].covariance = compliance[f] * intensity_covariance_ * compliance[f].transpose() +
                               floor2 * Eigen::Matrix3d::Identity();
   }
   return predicted;
@@ -78,14 +79,17 @@ FrameResult Tracker::Process(int frame, double time_s,
   const std::vector<fem::CableCommand> commands = CommandsAt(scene_, time_s);
   const fem::SolveSummary advanced = estimator_.Advance(commands);
 
-  features_.PlaceTags(rig_, T_rig_robot_, detections, estimator_.state().u);
+  // Over frames without forces the body may have gone further.
+  const double threshold =
+      options_.threshold_displacement * world_.marker_spacing * (1 + frames_without_forces_);
+  features_.PlaceTags(rig_, T_rig_robot_, detections, estimator_.state().u, threshold,
+                      options_.observe);
   const std::vector<PredictedFeature> predicted = Predict();
   const FeatureSightings sightings =
       scene_.markers.type == scene::MarkerType::kDot
-          ? AllocateDots(rig_, T_rig_robot_, predicted, detections,
-                         options_.threshold_displacement * world_.marker_spacing, options_.observe)
+          ? AllocateDots(rig_, T_rig_robot_, predicted, detections, threshold, options_.observe)
           : AllocateTagCorners(scene_.markers, rig_, T_rig_robot_, features_.features(), predicted,
-                               detections, options_.observe);
+                               detections, threshold, options_.observe);
   const std::vector<FeatureObservation> located =
       Locate(rig_, T_rig_robot_, predicted, sightings, options_.observe);
 
@@ -106,6 +110,7 @@ FrameResult Tracker::Process(int frame, double time_s,
   result.reason = advanced.ok() ? estimate.reason : advanced.BriefReport();
   result.chi2 = estimate.chi2;
   result.degrees_of_freedom = estimate.degrees_of_freedom;
+  frames_without_forces_ = estimate.ok() ? 0 : frames_without_forces_ + 1;
   if (estimate.ok()) {
     intensity_covariance_ = estimate.covariance;
     result.forces = ForceResults(estimate);
@@ -124,7 +129,8 @@ std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& 
   std::vector<ForceResult> forces;
   for (int s = 0; s < static_cast<int>(world_.sites.size()); ++s) {
     forces.push_back({scene_.forces.candidates[s].id, world_.sites[s].at.Apply(x),
-                      scene_.forces.candidates[s].position, estimator_.Force(estimate.intensity, s),
+                      world_.sites[s].at.Apply(world_.mesh().nodes),
+                      estimator_.Force(estimate.intensity, s),
                       estimator_.ForceCovariance(estimate.covariance, s)});
   }
   return forces;
@@ -148,17 +154,17 @@ std::vector<MarkerResult> Tracker::MarkerResults(
       const FeatureObservation& observation = observations[f];
       if (feature.marker != static_cast<int>(m)) continue;
       if (observation.status == FeatureObservation::Status::kInconsistent || rejected[f]) {
-        marker.status = MarkerStatus::kRejected;
+        if (seen == 0) marker.status = MarkerStatus::kRejected;
+        continue;
       }
       if (!observation.position.allFinite()) continue;
       misfit += observation.position - (feature.point.weights.Apply(x) + feature.point.offset);
       variance += observation.covariance.trace() / 3;
-      ++seen;
-      if (marker.status == MarkerStatus::kRejected) continue;
       const bool one_camera = observation.status == FeatureObservation::Status::kOneCamera;
-      if (one_camera || marker.status == MarkerStatus::kHidden) {
+      if (one_camera || seen == 0) {
         marker.status = one_camera ? MarkerStatus::kOneCamera : MarkerStatus::kSeen;
       }
+      ++seen;
     }
     if (seen > 0) {
       marker.measured = marker.model + misfit / seen;

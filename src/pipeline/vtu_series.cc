@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include "pipeline/result_tables.h"
+#include "softforce/base/input_error.h"
 #include "softforce/mesh/write_vtu.h"
 
 namespace softforce::pipeline {
 
 VtuSeries::VtuSeries(const std::filesystem::path& folder) : folder_(folder) {
-  std::filesystem::create_directories(folder_ / "vtu");
+  std::error_code error;
+  std::filesystem::create_directories(folder_ / "vtu", error);
+  if (error) {
+    throw base::InputError((folder_ / "vtu").string(), "cannot be made: " + error.message());
+  }
 }
 
 void VtuSeries::Add(int frame, double time_s, const mesh::TetMesh& mesh,

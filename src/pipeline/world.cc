@@ -135,6 +135,19 @@ Eigen::Matrix3Xd Directions(const scene::Candidate& candidate, const Eigen::Vect
   return {};
 }
 
+void RefuseMarkersAtOnePlace(const scene::Scene& scene) {
+  constexpr double kSamePlace = 1e-4;  // m; no two markers can be painted that close
+  const std::vector<scene::MarkerPoint>& points = scene.markers.points;
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (size_t j = i + 1; j < points.size(); ++j) {
+      if ((points[i].position - points[j].position).norm() > kSamePlace) continue;
+      throw base::InputError(
+          scene.file.string() + ": markers",
+          fmt::format("ids {} and {} are at one place", points[i].id, points[j].id));
+    }
+  }
+}
+
 // A single marker is alone on the whole body.
 double SmallestSpacing(const std::vector<scene::MarkerPoint>& points, const mesh::TetMesh& mesh) {
   double smallest = (mesh.nodes.rowwise().maxCoeff() - mesh.nodes.rowwise().minCoeff()).norm();
@@ -182,14 +195,15 @@ World BuildWorld(const scene::Scene& scene) {
         PlaceOnSurface(world.surface, body.mesh.nodes, candidate.position,
                        fmt::format("{}: forces: candidates: id {}", file, candidate.id));
     world.sites.push_back(
-        {mesh::PatchWeights(world.surface, body.mesh.nodes, point.at, scene.forces.patch),
+        {std::to_string(candidate.id),
+         mesh::PatchWeights(world.surface, body.mesh.nodes, point.at, scene.forces.patch),
          Directions(candidate, mesh::Normal(world.surface, body.mesh.nodes, point.at))});
-    world.site_points.push_back(point);
   }
   for (const scene::MarkerPoint& marker : scene.markers.points) {
     world.markers.push_back(PlaceOnSurface(world.surface, body.mesh.nodes, marker.position,
                                            fmt::format("{}: markers: id {}", file, marker.id)));
   }
+  RefuseMarkersAtOnePlace(scene);
   world.marker_spacing = SmallestSpacing(scene.markers.points, body.mesh);
   world.solver = std::make_unique<fem::StaticSolver>(std::move(body), file + ": body");
   return world;

@@ -134,8 +134,8 @@ TEST(ForceEstimator, SaysThatForcesCannotBeToldApart) {
 
   const ForceEstimate estimate = estimator.Estimate(bar.Observe(bar.Load(force), kNoise), {});
 
-  EXPECT_FALSE(estimate.ok());
-  EXPECT_NE(estimate.reason, "");
+  EXPECT_EQ(estimate.status, ForceEstimate::Status::kUnobservable) << estimate.BriefReport();
+  EXPECT_NE(estimate.reason.find("tip, tip"), std::string::npos) << estimate.reason;
 }
 
 TEST(ForceEstimator, RefusesOptionsOutOfRange) {

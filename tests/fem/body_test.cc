@@ -50,6 +50,25 @@ TEST(Body, OfWhichAPartFloatsIsRefused) {
   EXPECT_THAT(Refusal(body), ::testing::HasSubstr("(500.0 0.0 0.0) mm"));
 }
 
+TEST(Body, ThatIsHeldEverywhereIsRefused) {
+  Body body = testing::MakeBar(1);
+  body.fixed_nodes.clear();
+  for (int n = 0; n < body.mesh.num_nodes(); ++n) body.fixed_nodes.push_back(n);
+  EXPECT_THAT(Refusal(body), ::testing::HasSubstr("nothing can move"));
+}
+
+TEST(Body, WithACableThatPullsAtAFixedPlaceIsRefused) {
+  Body body = testing::MakeBar();
+  body.cables.push_back({"left", {testing::PointOf(body, {0, 0.005, 0.01})}, {0, 0, 0.1}});
+  EXPECT_THAT(Refusal(body), ::testing::HasSubstr("cable \"left\""));
+}
+
+TEST(Body, WithACableWithoutDirectionIsRefused) {
+  Body body = testing::MakeBar();
+  body.cables.push_back({"left", {testing::PointOf(body, {0.1, 0.005, 0.01})}, {0.1, 0.005, 0.01}});
+  EXPECT_THAT(Refusal(body), ::testing::HasSubstr("guide"));
+}
+
 TEST(Body, OfImpossibleMaterialIsRefused) {
   Body body = testing::MakeBar();
   body.materials[0].poissons_ratio = 0.5;

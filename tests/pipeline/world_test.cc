@@ -73,6 +73,12 @@ TEST(BuildWorld, TakesASingleMarker) {
   EXPECT_TRUE(std::isfinite(BuildWorld(scene).marker_spacing));
 }
 
+TEST(BuildWorld, RefusesTwoMarkersAtOnePlace) {
+  scene::Scene scene = Demo();
+  scene.markers.points[5].position = scene.markers.points[2].position;
+  EXPECT_THAT(Refusal([&] { BuildWorld(scene); }), ::testing::HasSubstr("ids 2 and 5"));
+}
+
 TEST(BuildWorld, RefusesAGroupThatTheMeshDoesNotHave) {
   scene::Scene scene = Demo();
   scene.fixed = {{"base", {}, {}}};

@@ -21,7 +21,8 @@ struct BarExperiment {
       points.push_back(PointOf(body, {x, 0.005, 0.01}));
     }
     // Across the bar only: along it a bar is so stiff that hardly anything can be seen.
-    sites.push_back({PointOf(body, {0.1, 0.005, 0.005}), Eigen::Matrix3d::Identity().rightCols(2)});
+    sites.push_back(
+        {"tip", PointOf(body, {0.1, 0.005, 0.005}), Eigen::Matrix3d::Identity().rightCols(2)});
   }
 
   // The bar's answer to an intensity per component of the sites.

@@ -11,6 +11,7 @@ namespace softforce::estimation {
 
 // A place where an external force acts, and the directions that it may have there.
 struct ForceSite {
+  std::string name;       // for messages
   mesh::NodalWeights at;  // the mean over its patch
   Eigen::Matrix3Xd
       directions;  // orthonormal columns: 3×1 for a known direction, 3×3 for a free one
@@ -126,7 +127,8 @@ class ForceEstimator {
 
   // ∂(position of a point)/∂λ, 3×components, m/N: rows of W_ef at the current state, as last
   // factorised.
-  Eigen::Matrix3Xd Compliance(const mesh::NodalWeights& at);
+  // Call Advance or Estimate first.
+  Eigen::Matrix3Xd Compliance(const mesh::NodalWeights& at) const;
 
   // The force on a site in newtons, and the covariance of its three components.
   Eigen::Vector3d Force(const Eigen::VectorXd& intensity, int site) const;
@@ -136,6 +138,8 @@ class ForceEstimator {
   fem::LoadCase LoadOf(const Eigen::VectorXd& intensity,
                        const std::vector<fem::CableCommand>& commands) const;
   int FirstComponent(int site) const;
+  bool RefreshCompliance();  // false if the tangent is not positive definite
+  std::string SitesIn(const Eigen::VectorXd& combination) const;  // names, for a person
   BodyResponse Response(const std::vector<fem::CableCommand>& commands, ForceEstimate* estimate);
   double LargestDisplacement(const std::vector<Observation>& observations) const;  // m, now
   std::vector<WhitenedObservation> Whiten(const std::vector<Observation>& observations,
@@ -162,6 +166,7 @@ class ForceEstimator {
   Eigen::VectorXd state_intensity_;  // N, that state_ balances; differs while a fit is under way
   Eigen::MatrixXd compliance_;       // 3N×components, m/N, at compliance_u_
   Eigen::Matrix3Xd compliance_u_;
+  Eigen::Array<bool, Eigen::Dynamic, 1> compliance_taut_;  // which cables were taut there
 };
 
 }  // namespace softforce::estimation

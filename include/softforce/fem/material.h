@@ -42,8 +42,8 @@ struct Material {
 // elasticity ∂P/∂F with index 3·column + row in both directions (Pa).
 struct MaterialResponse {
   double energy = NAN;
-  Eigen::Matrix3d P;
-  Matrix9d dPdF;
+  Eigen::Matrix3d P = Eigen::Matrix3d::Constant(NAN);
+  Matrix9d dPdF = Matrix9d::Constant(NAN);  // only if asked for
   bool valid = false;  // false where the law has no value: J ≤ 0 for the neo-Hookean laws
 };
 

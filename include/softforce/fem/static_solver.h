@@ -59,6 +59,8 @@ struct SolveSummary {
 // How the body answers to small changes of the dead loads, at an equilibrium and with the commands
 // of the cables held: a cable commanded by displacement gives way in tension (paper eqs. 4 and 12).
 struct Sensitivity {
+  bool ok =
+      false;  // false if the tangent is not positive definite there: the body is about to buckle
   Eigen::MatrixXd du;         // 3N×k, m/N: K⁻¹ Hᵀ and its correction for the cables
   Eigen::MatrixXd d_tension;  // cables×k
 };

@@ -25,9 +25,11 @@ class MarkerFeatures {
   const std::vector<Feature>& features() const { return features_; }
 
   // Looks for markers that are tags without corners yet, and places their corners. `u`:
-  // displacement of the nodes that the model expects in this frame.
+  // displacement of the nodes that the model expects in this frame; a tag further than `threshold`
+  // (m) from where its marker should be is not it.
   void PlaceTags(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
-                 const std::vector<CameraDetections>& cameras, const Eigen::Matrix3Xd& u);
+                 const std::vector<CameraDetections>& cameras, const Eigen::Matrix3Xd& u,
+                 double threshold, const ObserveOptions& options);
 
  private:
   void PlaceTag(int marker, const Eigen::Vector3d& up_robot, const Eigen::Matrix3Xd& u);
@@ -38,12 +40,12 @@ class MarkerFeatures {
   std::vector<char> placed_;  // per marker
 };
 
-// Tag corners by id and family, gated by prediction.
+// Tag corners by id and family, gated by prediction and by the paper's threshold displacement (m).
 FeatureSightings AllocateTagCorners(const scene::Markers& markers, const camera::Rig& rig,
                                     const Eigen::Isometry3d& T_rig_robot,
                                     const std::vector<Feature>& features,
                                     const std::vector<PredictedFeature>& predicted,
                                     const std::vector<CameraDetections>& cameras,
-                                    const ObserveOptions& options);
+                                    double threshold_displacement, const ObserveOptions& options);
 
 }  // namespace softforce::pipeline

@@ -25,7 +25,7 @@ const char* Name(MarkerStatus status);
 struct MarkerResult {
   int id = -1;
   MarkerStatus status = MarkerStatus::kHidden;
-  Eigen::Vector3d measured = Eigen::Vector3d::Constant(NAN);  // m; NaN if hidden
+  Eigen::Vector3d measured = Eigen::Vector3d::Constant(NAN);  // m; NaN if hidden or rejected
   double sd = NAN;                                            // m, root mean square over the axes
   Eigen::Vector3d model = Eigen::Vector3d::Constant(NAN);     // m
 };

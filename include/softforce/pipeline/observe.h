@@ -47,6 +47,8 @@ struct ObserveOptions {
   double pixel_floor = 0.03;
   double min_facing = 0.1;      // cosine between a marker's normal and the way to the camera
   double size_tolerance = 1.7;  // a dot's picture may be this much larger or smaller than expected
+
+  void Check() const;  // throws InputError naming the option
 };
 
 // Which detection in which camera belongs to which feature, by prediction, gate and global

@@ -30,7 +30,7 @@ struct RunOptions {
   void Check() const;  // throws InputError naming the option
 };
 
-// A force's mean over the frames in which it was estimated.
+// What a run did, and whether its results can be relied on.
 struct RunReport {
   int frames = 0;         // processed
   int usable_frames = 0;  // with forces

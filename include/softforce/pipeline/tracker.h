@@ -50,7 +50,8 @@ class Tracker {
   TrackerOptions options_;
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;
-  Eigen::MatrixXd intensity_covariance_;  // N², of the last frame's forces
+  Eigen::MatrixXd intensity_covariance_;  // N²; grows by the random walk from frame to frame
+  int frames_without_forces_ = 0;         // since the last usable one
 };
 
 }  // namespace softforce::pipeline

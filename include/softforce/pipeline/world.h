@@ -24,7 +24,6 @@ struct World {
   mesh::Surface surface;
   std::unique_ptr<fem::StaticSolver> solver;
   std::vector<estimation::ForceSite> sites;  // one per candidate of the scene
-  std::vector<BodyPoint> site_points;        // where the candidates are
   std::vector<BodyPoint> markers;            // centres of the scene's markers
   double marker_spacing =
       0;  // m, the smallest distance between two markers, at most the body's size

@@ -11,7 +11,7 @@ namespace softforce::vision {
 
 // A point of known place in the robot frame, seen by one camera of the rig.
 struct PointSighting {
-  Eigen::Vector3d p_robot;     // m
+  Eigen::Vector3d p_robot;  // m
   int camera = -1;
   Eigen::Vector2d pixel;       // px, distorted
   Eigen::Matrix2d covariance;  // px²
@@ -30,11 +30,11 @@ struct RigPose {
   bool ok() const { return status == Status::kOk; }
 };
 
-// Where the rig stands in the robot frame, by ViSP: vpPose (Dementhon or Lagrange, then virtual visual
-// servoing) in the camera that sees most, then virtual visual servoing over the points of all cameras
-// together, each camera's image Jacobian carried to the rig frame by its velocity twist matrix and each
-// point weighted by its covariance. The returned covariance scales with the residuals where these exceed
-// what the points' own covariances allow.
+// Where the rig stands in the robot frame, by ViSP: vpPose (Dementhon or Lagrange, then virtual
+// visual servoing) in the camera that sees most, then virtual visual servoing over the points of
+// all cameras together, each camera's image Jacobian carried to the rig frame by its velocity twist
+// matrix and each point weighted by its covariance. The returned covariance scales with the
+// residuals where these exceed what the points' own covariances allow.
 RigPose EstimateRigPose(const camera::Rig& rig, const std::vector<PointSighting>& sightings);
 
 }  // namespace softforce::vision

@@ -13,26 +13,27 @@ namespace softforce::vision {
 struct Tag {
   std::string family;
   int id = -1;
-  // px, the OpenCV convention (pixel (0, 0) is the CENTRE of the top-left pixel): top left, top right,
-  // bottom right, bottom left of the black square of the upright tag. Upright is how OpenCV's aruco module
-  // draws a tag; AprilTag's own pictures of 36h11, 25h9 and 16h5 stand upside down against it.
+  // px, the OpenCV convention (pixel (0, 0) is the CENTRE of the top-left pixel): top left, top
+  // right, bottom right, bottom left of the black square of the upright tag. Upright is how
+  // OpenCV's aruco module draws a tag; AprilTag's own pictures of 36h11, 25h9 and 16h5 stand upside
+  // down against it.
   std::array<Eigen::Vector2d, 4> corners;
   std::array<Eigen::Matrix2d, 4> corner_covariances;  // px²
-  double decision_margin = NAN;                       // AprilTag's own measure of how sure the code is
+  double decision_margin = NAN;  // AprilTag's own measure of how sure the code is
 };
 
 struct TagOptions {
-  double decimate = 2;             // AprilTag looks for squares in a picture this many times smaller
-  int max_corrected_bits = 1;      // Hamming distance still accepted
+  double decimate = 2;         // AprilTag looks for squares in a picture this many times smaller
+  int max_corrected_bits = 1;  // Hamming distance still accepted
   double min_decision_margin = 20;
-  double border = 3;               // px; tags closer to the picture's edge are refused, being clipped
+  double border = 3;  // px; tags closer to the picture's edge are refused, being clipped
 
   void Check() const;  // throws InputError naming the option
 };
 
-// Finds the tags of one family. AprilTag 3 reports corners in a frame where the pixel CORNER is (0, 0);
-// that half pixel is taken off here, once. Corners are then refined: a line is fitted to each edge at the
-// full resolution, and neighbouring lines are intersected.
+// Finds the tags of one family. AprilTag 3 reports corners in a frame where the pixel CORNER is (0,
+// 0); that half pixel is taken off here, once. Corners are then refined: a line is fitted to each
+// edge at the full resolution, and neighbouring lines are intersected.
 class TagDetector {
  public:
   // `family`: tag36h11, tag25h9, tag16h5 or tagStandard41h12; throws InputError for any other.

@@ -6,10 +6,12 @@
 
 namespace softforce::vision {
 
-// Writes an MP4 (H.264) that plays in browsers. The file shows up under its name only once it is complete.
+// Writes an MP4 (H.264) that plays in browsers. The file shows up under its name only once it is
+// complete.
 class VideoWriter {
  public:
-  // Pictures must all be of one size; the first one sets it. Throws InputError if the file cannot be made.
+  // Pictures must all be of one size; the first one sets it. Throws InputError if the file cannot
+  // be made.
   VideoWriter(const std::filesystem::path& path, double frames_per_second);
   ~VideoWriter();
   VideoWriter(VideoWriter&&) noexcept;
