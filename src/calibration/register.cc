@@ -84,7 +84,7 @@ vision::RigPose FiducialRegistration::SolveTurned(int quarter_turns) const {
 }
 
 vision::RigPose FiducialRegistration::Solve() const {
-  const vision::RigPose upright = SolveTurned(0);
+  vision::RigPose upright = SolveTurned(0);
   if (upright.ok() && upright.rms_px < kSuspiciousRms) return upright;
   // Printed from another source, all tags may be turned alike; several tags tell, one cannot.
   const bool several = std::any_of(means_.begin(), means_.end(), [&](const CornerMean& mean) {

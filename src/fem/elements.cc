@@ -59,6 +59,7 @@ Elements::Elements(const Body& body) : nodes_(body.mesh.elements) {
   const int n = nodes_per_element();
   const std::vector<Eigen::Vector4d> points = IntegrationPoints(n);
   std::vector<Eigen::Matrix3Xd> derivatives;
+  derivatives.reserve(points.size());
   for (const Eigen::Vector4d& b : points) derivatives.push_back(ShapeDerivatives(n, b));
 
   gradients_.reserve(size_t{3} * n * points.size() * num_elements());

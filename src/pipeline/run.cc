@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "pipeline/overlay_video.h"
+#include "pipeline/refusals.h"
 #include "pipeline/registration.h"
 #include "pipeline/result_tables.h"
 #include "pipeline/stage_clock.h"
@@ -33,32 +34,6 @@ std::vector<vision::Recording::Source> Sources(const scene::Scene& scene,
   return files;
 }
 
-// Live cameras are named by a URL, a device or a GStreamer pipeline.
-void RefuseLiveSources(const scene::Scene& scene,
-                       const std::vector<vision::Recording::Source>& sources) {
-  for (const vision::Recording::Source& source : sources) {
-    const std::string name = source.file.string();
-    std::error_code ignored;
-    if (std::filesystem::exists(source.file, ignored) && name.rfind("/dev/", 0) != 0) continue;
-    if (name.find("://") == std::string::npos && name.find('!') == std::string::npos &&
-        name.rfind("/dev/", 0) != 0) {
-      continue;
-    }
-    throw base::InputError(
-        scene.file.string() + ": cameras: sources: " + source.camera,
-        fmt::format("\"{}\" is a live source, but this version reads files only", name),
-        "Record the cameras to files first.");
-  }
-}
-
-void RefuseUnknownLocations(const scene::Scene& scene) {
-  if (scene.forces.known_locations) return;
-  throw base::InputError(
-      scene.file.string() + ": forces: known",
-      "is false, but this version estimates forces at known places only",
-      "Set 'known: true' and list the places where the forces act as candidates.");
-}
-
 // I_w = ‖W_ef⁺‖₁ of the paper (VI.A) for the body at rest: how much an error of the markers can be
 // amplified.
 double IndexW(const World& world) {
@@ -73,38 +48,6 @@ double IndexW(const World& world) {
   if (W.rows() < W.cols()) return NAN;
   const Eigen::MatrixXd inverse = W.completeOrthogonalDecomposition().pseudoInverse();
   return inverse.cwiseAbs().colwise().sum().maxCoeff();
-}
-
-// Removes what an earlier run left under the same names, so that a run that ends early cannot be
-// mistaken for a complete one.
-void ClearOldResults(const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> old;
-  for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json",
-                           "overlay.mp4", "results.pvd"}) {
-    old.push_back(out / name);
-  }
-  std::error_code ignored;  // a folder that is not there has no old frames
-  for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.rfind("frame_", 0) == 0 && entry.path().extension() == ".vtu")
-      old.push_back(entry.path());
-  }
-  for (const std::filesystem::path& file : old) {
-    std::error_code error;
-    std::filesystem::remove(file, error);
-    if (!error) continue;
-    throw base::InputError(file.string(), "an older result cannot be removed: " + error.message(),
-                           "Choose another folder with --out.");
-  }
-}
-
-void MakeFolder(const std::filesystem::path& out) {
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) {
-    throw base::InputError(out.string(), "the folder cannot be made: " + error.message(),
-                           "Choose another with --out.");
-  }
 }
 
 // A run in progress: what is known before the first frame, and what the frames add up to.
@@ -128,7 +71,6 @@ class Job {
  private:
   vision::Recording OpenRecording() const;
   std::vector<std::filesystem::path> Inputs() const;
-  void RefuseToOverwriteInputs() const;
   void ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series);
   FrameResult ProcessFrame(const vision::FrameSet& frame);
   void Judge();
@@ -156,7 +98,7 @@ class Job {
 vision::Recording Job::OpenRecording() const {
   RefuseUnknownLocations(scene_);
   RefuseLiveSources(scene_, sources_);
-  RefuseToOverwriteInputs();
+  RefuseToOverwrite(Inputs(), options_.out);
   vision::Recording recording(rig_, sources_);
   const int announced = recording.announced_frames();
   if (announced > 0 && options_.first_frame >= announced) {
@@ -172,20 +114,6 @@ std::vector<std::filesystem::path> Job::Inputs() const {
   if (scene_.actuation_file) inputs.push_back(*scene_.actuation_file);
   for (const vision::Recording::Source& source : sources_) inputs.push_back(source.file);
   return inputs;
-}
-
-void Job::RefuseToOverwriteInputs() const {
-  std::error_code ignored;  // a path that cannot be resolved is compared as it is
-  const auto out = std::filesystem::weakly_canonical(options_.out, ignored);
-  for (const std::filesystem::path& input : Inputs()) {
-    const auto folder = std::filesystem::weakly_canonical(input, ignored).parent_path();
-    if (folder != out && folder != out / "vtu") continue;
-    throw base::InputError(
-        "--out " + options_.out.string(),
-        fmt::format("is the folder of the input {}, which results could overwrite",
-                    input.filename().string()),
-        "Choose a folder that holds none of the scene's files.");
-  }
 }
 
 FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
@@ -269,9 +197,8 @@ void Job::LogSetUp() const {
 
 RunReport Job::Finish() {
   const auto start = std::chrono::steady_clock::now();
-  MakeFolder(options_.out);
+  PrepareFolder(options_.out);
   LogSetUp();
-  ClearOldResults(options_.out);
   ResultTables tables(options_.out, !scene_.actuators.empty());
   std::optional<OverlayVideo> overlay;
   if (options_.overlay) {
@@ -312,29 +239,6 @@ RunReport Run(const std::filesystem::path& scene_file, const RunOptions& options
   options.Check();
   Job job(scene_file, options);
   return job.Finish();
-}
-
-std::string RunReport::BriefReport() const {
-  return fmt::format("{} of {} frames with forces, {:.1f} s{}", usable_frames, frames, seconds,
-                     usable ? "" : "; NOT USABLE");
-}
-
-std::string RunReport::FullReport() const {
-  std::string text = BriefReport() + "\n";
-  for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
-  if (last) {
-    text += fmt::format("\nForces in frame {} ({:.3f} s)\n", last->frame, last->time_s);
-    text += fmt::format("  {:>9}  {:>23}  {:>27}  {:>9}  {:>9}\n", "candidate", "place, mm",
-                        "force, N", "norm, N", "sd, N");
-    for (const ForceResult& force : last->forces) {
-      const Eigen::Vector3d p = 1e3 * force.position;
-      text += fmt::format(
-          "  {:>9}  {:7.2f} {:7.2f} {:7.2f}  {:8.4f} {:8.4f} {:9.4f}  {:9.4f}  {:9.4f}\n",
-          force.candidate, p.x(), p.y(), p.z(), force.force.x(), force.force.y(), force.force.z(),
-          force.force.norm(), force.NormSd());
-    }
-  }
-  return text + "\nResults: " + out.string() + "\n";
 }
 
 }  // namespace softforce::pipeline

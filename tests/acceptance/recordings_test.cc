@@ -17,6 +17,8 @@ struct RecordingCase {
   double max_error;
 };
 
+void PrintTo(const RecordingCase& recording, std::ostream* out) { *out << recording.name; }
+
 class EveryRecording : public ::testing::TestWithParam<RecordingCase> {};
 
 TEST_P(EveryRecording, GivesForcesWithinItsBound) {

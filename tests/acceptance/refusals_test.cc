@@ -19,6 +19,8 @@ struct Spoilt {
   std::vector<const char*> named;
 };
 
+void PrintTo(const Spoilt& spoilt, std::ostream* out) { *out << spoilt.name; }
+
 // Replaces the numbers of one node of sheet.msh (format 4.1) by `coordinates`: the node in the
 // middle of a run.
 void SetNode(const Folder& folder, const std::string& coordinates) {

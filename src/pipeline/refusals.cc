@@ -1,0 +1,87 @@
+#include "pipeline/refusals.h"
+
+#include <fmt/format.h>
+
+#include "softforce/base/input_error.h"
+
+namespace softforce::pipeline {
+namespace {
+
+void ClearOldResults(const std::filesystem::path& out) {
+  std::vector<std::filesystem::path> old;
+  for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json",
+                           "overlay.mp4", "results.pvd"}) {
+    old.push_back(out / name);
+  }
+  std::error_code ignored;  // a folder that is not there has no old frames
+  for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("frame_", 0) == 0 && entry.path().extension() == ".vtu")
+      old.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : old) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    if (!error) continue;
+    throw base::InputError(file.string(), "an older result cannot be removed: " + error.message(),
+                           "Choose another folder with --out.");
+  }
+}
+
+void MakeFolder(const std::filesystem::path& out) {
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) {
+    throw base::InputError(out.string(), "the folder cannot be made: " + error.message(),
+                           "Choose another with --out.");
+  }
+}
+
+}  // namespace
+
+void RefuseLiveSources(const scene::Scene& scene,
+                       const std::vector<vision::Recording::Source>& sources) {
+  for (const vision::Recording::Source& source : sources) {
+    const std::string name = source.file.string();
+    std::error_code ignored;
+    if (std::filesystem::exists(source.file, ignored) && name.rfind("/dev/", 0) != 0) continue;
+    if (name.find("://") == std::string::npos && name.find('!') == std::string::npos &&
+        name.rfind("/dev/", 0) != 0) {
+      continue;
+    }
+    throw base::InputError(
+        scene.file.string() + ": cameras: sources: " + source.camera,
+        fmt::format("\"{}\" is a live source, but this version reads files only", name),
+        "Record the cameras to files first.");
+  }
+}
+
+void RefuseUnknownLocations(const scene::Scene& scene) {
+  if (scene.forces.known_locations) return;
+  throw base::InputError(
+      scene.file.string() + ": forces: known",
+      "is false, but this version estimates forces at known places only",
+      "Set 'known: true' and list the places where the forces act as candidates.");
+}
+
+void RefuseToOverwrite(const std::vector<std::filesystem::path>& inputs,
+                       const std::filesystem::path& out_folder) {
+  std::error_code ignored;  // a path that cannot be resolved is compared as it is
+  const auto out = std::filesystem::weakly_canonical(out_folder, ignored);
+  for (const std::filesystem::path& input : inputs) {
+    const auto folder = std::filesystem::weakly_canonical(input, ignored).parent_path();
+    if (folder != out && folder != out / "vtu") continue;
+    throw base::InputError(
+        "--out " + out_folder.string(),
+        fmt::format("is the folder of the input {}, which results could overwrite",
+                    input.filename().string()),
+        "Choose a folder that holds none of the scene's files.");
+  }
+}
+
+void PrepareFolder(const std::filesystem::path& out) {
+  MakeFolder(out);
+  ClearOldResults(out);
+}
+
+}  // namespace softforce::pipeline
