@@ -6,13 +6,16 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 namespace softforce::testing {
 
 std::filesystem::path FreshFolder(const std::string& name) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / "softforce_acceptance" / name;
+  // One place per build, so that two builds can be tested at once.
+  const size_t build = std::hash<std::string>()(SOFTFORCE_PROGRAM);
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) /
+                                       fmt::format("softforce_acceptance_{:x}", build) / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
