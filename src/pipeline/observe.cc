@@ -147,6 +147,7 @@ FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T
     const std::vector<vision::Dot>& dots = cameras[c].dots;
     const std::vector<int> kept = DotsOfRightSize(dots, views, options.size_tolerance);
     std::vector<allocation::DetectedPixel> detections;
+    detections.reserve(kept.size());
     for (const int d : kept) {
       detections.push_back({dots[d].centroid, WithFloor(dots[d].covariance, options.pixel_floor)});
     }

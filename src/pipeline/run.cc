@@ -30,6 +30,7 @@ std::vector<vision::Recording::Source> Sources(const scene::Scene& scene,
   std::map<std::string, std::string> sources = scene.cameras.sources;
   for (const auto& [camera, source] : options.sources) sources[camera] = source;
   std::vector<vision::Recording::Source> files;
+  files.reserve(sources.size());
   for (const auto& [camera, source] : sources) files.push_back({camera, source});
   return files;
 }

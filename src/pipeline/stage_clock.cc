@@ -1,6 +1,7 @@
 #include "pipeline/stage_clock.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace softforce::pipeline {
 
@@ -18,7 +19,7 @@ std::vector<StageClock::Percentiles> StageClock::Report() const {
   for (auto [name, times] : times_ms_) {
     std::sort(times.begin(), times.end());
     const auto at = [&times = times](double share) {
-      return times[static_cast<size_t>(share * static_cast<double>(times.size() - 1) + 0.5)];
+      return times[static_cast<size_t>(std::lround(share * static_cast<double>(times.size() - 1)))];
     };
     report.push_back({name, static_cast<int>(times.size()), at(0.5), at(0.95), times.back()});
   }

@@ -127,6 +127,7 @@ FrameResult Tracker::Process(int frame, double time_s,
 std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& estimate) const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
   std::vector<ForceResult> forces;
+  forces.reserve(world_.sites.size());
   for (int s = 0; s < static_cast<int>(world_.sites.size()); ++s) {
     forces.push_back({scene_.forces.candidates[s].id, world_.sites[s].at.Apply(x),
                       world_.sites[s].at.Apply(world_.mesh().nodes),
