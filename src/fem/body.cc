@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -31,13 +32,29 @@ std::vector<int> Parts(const mesh::TetMesh& mesh) {
   return parent;
 }
 
-// Whether points span at least a plane, so that a body held there cannot move.
-bool SpanAPlane(const Eigen::Matrix3Xd& points) {
-  if (points.cols() < 3) return false;
-  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centred * centred.transpose(),
-                                                            Eigen::EigenvaluesOnly);
-  return axes.eigenvalues()(1) > 1e-12 * axes.eigenvalues()(2);  // squared extents, ascending
+// Whether holding these components of displacement at zero leaves no rigid motion: the six motions
+// v + ω × (X − centre), seen at the held components, are then independent.
+bool KeepsFromMoving(const std::vector<FixedComponent>& held, const Eigen::Matrix3Xd& X) {
+  if (held.empty()) return false;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const FixedComponent& component : held) centre += X.col(component.node);
+  centre /= static_cast<double>(held.size());
+  double size = 0;
+  for (const FixedComponent& component : held) {
+    size = std::max(size, (X.col(component.node) - centre).norm());
+  }
+  if (size == 0) return false;
+
+  Eigen::Matrix<double, 6, 6> seen = Eigen::Matrix<double, 6, 6>::Zero();
+  for (const FixedComponent& component : held) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(component.axis);
+    Eigen::Matrix<double, 6, 1> motion;
+    motion << axis, ((X.col(component.node) - centre) / size).cross(axis);
+    seen += motion * motion.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> modes(seen,
+                                                                         Eigen::EigenvaluesOnly);
+  return modes.eigenvalues()(0) > 1e-12 * modes.eigenvalues()(5);
 }
 
 }  // namespace
@@ -62,24 +79,38 @@ void Body::Check(const std::string& where) const {
     }
   }
 
+  std::vector<FixedComponent> held = fixed_components;
+  for (const int node : fixed_nodes) {
+    for (int axis = 0; axis < 3; ++axis) held.push_back({node, axis});
+  }
   const std::vector<int> part = Parts(mesh);
-  for (int node = 0; node < mesh.num_nodes(); ++node) {
-    if (part[node] != node) continue;  // a part is named by one of its nodes
-    std::vector<int> held;
-    for (const int held_node : fixed_nodes) {
-      if (part[held_node] == node) held.push_back(held_node);
-    }
-    if (SpanAPlane(mesh.nodes(Eigen::all, held))) continue;
+  std::map<int, std::vector<FixedComponent>> held_of_part;
+  for (const int name : part) held_of_part[name];
+  for (const FixedComponent& component : held) {
+    held_of_part[part[component.node]].push_back(component);
+  }
+  for (const auto& [node, held_here] : held_of_part) {
+    if (KeepsFromMoving(held_here, mesh.nodes)) continue;
     const Eigen::Vector3d at_mm = 1000 * mesh.nodes.col(node);
+    std::set<int> held_nodes;
+    for (const FixedComponent& component : held_here) held_nodes.insert(component.node);
+    const std::string which =
+        held_of_part.size() == 1
+            ? "the body"
+            : fmt::format(
+                  "the mesh falls into {} parts that share no node; the one around "
+                  "({:.1f} {:.1f} {:.1f}) mm",
+                  held_of_part.size(), at_mm.x(), at_mm.y(), at_mm.z());
     throw base::InputError(
         where + ": fixed",
-        fmt::format(
-            "the part of the body around ({:.1f} {:.1f} {:.1f}) mm is held at {} nodes, which do "
-            "not "
-            "keep it from drifting or turning; at least 3 nodes that are not in line are needed",
-            at_mm.x(), at_mm.y(), at_mm.z(), held.size()),
-        "Check the boxes and groups under 'fixed' against the mesh: its unit, and where it "
-        "stands.");
+        fmt::format("{} is held at {} nodes, which do not keep it from drifting or turning; at "
+                    "least 3 nodes that are not in line are needed",
+                    which, held_nodes.size()),
+        held_of_part.size() == 1
+            ? "Check the boxes and groups under 'fixed' against the mesh: its unit, and where it "
+              "stands."
+            : "Join the parts when meshing (in Gmsh: fragment the volumes, or merge duplicate "
+              "nodes), or fix each of them.");
   }
 }
 

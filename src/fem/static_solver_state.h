@@ -43,6 +43,7 @@ struct StaticSolver::State {
       const int f = assembler.free_index(node);
       if (f >= 0) free.middleRows<3>(3 * f) = all.middleRows<3>(3 * node);
     }
+    for (const int row : assembler.held()) free.row(row).setZero();
     return free;
   }
   Eigen::MatrixXd Scatter(const Eigen::MatrixXd& free) const {

@@ -1,6 +1,7 @@
 #include "fem/tangent.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fem/cable_path.h"
 
@@ -28,6 +29,7 @@ TangentAssembler::TangentAssembler(const Body& body, const Elements& elements) :
   }
   for (const Cable& cable : body.cables) add_clique(CableNodes(cable));
   MakePattern(cliques);
+  FindHeldEntries();
 
   for (int e = 0; e < elements.num_elements(); ++e) {
     for (int j = 0; j < n; ++j) {
@@ -66,6 +68,32 @@ void TangentAssembler::MakePattern(const std::vector<std::vector<int>>& cliques)
     }
   }
   matrix_.value.resize(matrix_.row.size());
+}
+
+void TangentAssembler::FindHeldEntries() {
+  std::vector<char> is_held(matrix_.size(), 0);
+  for (const FixedComponent& component : body_.fixed_components) {
+    const int node = free_index_[component.node];
+    if (node >= 0) is_held[3 * node + component.axis] = 1;
+  }
+  for (int column = 0; column < matrix_.size(); ++column) {
+    if (is_held[column]) held_.push_back(column);
+    for (int k = matrix_.column_start[column]; k < matrix_.column_start[column + 1]; ++k) {
+      const int row = matrix_.row[k];
+      if (!is_held[row] && !is_held[column]) continue;
+      (row == column ? held_diagonal_ : held_entries_).push_back(k);
+    }
+  }
+}
+
+void TangentAssembler::HoldComponents() {
+  if (held_.empty()) return;
+  double mean = 0;
+  for (int column = 0; column < matrix_.size(); ++column) {
+    mean += std::abs(matrix_.value[matrix_.column_start[column]]) / matrix_.size();
+  }
+  for (const size_t k : held_entries_) matrix_.value[k] = 0;
+  for (const size_t k : held_diagonal_) matrix_.value[k] = mean;
 }
 
 int TangentAssembler::BlockPosition(int row_node, int column_node) const {
@@ -129,6 +157,7 @@ void TangentAssembler::Assemble(const Elements& elements, const Eigen::Matrix3Xd
         body_.cables[c], x, tension(static_cast<int>(c)),
         [&](int i, int j, const Eigen::Matrix3d& K_ij) { AddSymmetric(i, j, K_ij); });
   }
+  HoldComponents();
 }
 
 }  // namespace softforce::fem

@@ -28,6 +28,10 @@ class TangentAssembler {
   int free_index(int node) const { return free_index_[node]; }
   int num_free_nodes() const { return num_free_; }
 
+  // Scalar rows and columns of components that are held at free nodes; the tangent is the identity
+  // there, times its own mean diagonal.
+  const std::vector<int>& held() const { return held_; }
+
   // K at displacement u, with the stiffness that the tensions add by the cables' changes of
   // direction.
   void Assemble(const Elements& elements, const Eigen::Matrix3Xd& u,
@@ -35,6 +39,8 @@ class TangentAssembler {
   const LowerBlocks& matrix() const { return matrix_; }
 
  private:
+  void FindHeldEntries();
+  void HoldComponents();
   void MakePattern(const std::vector<std::vector<int>>& cliques);
   int BlockPosition(int row_node, int column_node) const;  // in free numbering
   void AddBlock(int position, int column_node, const Eigen::Matrix3d& block);
@@ -45,8 +51,10 @@ class TangentAssembler {
   const Body& body_;
   std::vector<int> free_index_;
   int num_free_ = 0;
+  std::vector<int> held_;
   std::vector<int> block_start_,
-      block_row_;                    // block pattern: columns of free nodes, rows ascending
+      block_row_;  // block pattern: columns of free nodes, rows ascending
+  std::vector<size_t> held_entries_, held_diagonal_;  // in matrix_.value, of held components
   std::vector<int> cell_positions_;  // per cell and pair i ≤ j of its nodes; −1: a fixed node
   LowerBlocks matrix_;
 };

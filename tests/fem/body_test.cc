@@ -47,7 +47,26 @@ TEST(Body, OfWhichAPartFloatsIsRefused) {
   mesh.elements.conservativeResize(4, cells + other.num_elements());
   mesh.elements.rightCols(other.num_elements()) = other.elements.array() + first;
   mesh.region.resize(mesh.num_elements(), 0);
+  EXPECT_THAT(Refusal(body), ::testing::HasSubstr("falls into 2 parts that share no node"));
   EXPECT_THAT(Refusal(body), ::testing::HasSubstr("(500.0 0.0 0.0) mm"));
+}
+
+// x held on x = 0, y on y = 0, z on z = 0: an eighth of a body that is symmetric to three planes.
+Body HeldBySymmetry(int planes) {
+  Body body = testing::MakeBar(1);
+  body.fixed_nodes.clear();
+  for (int n = 0; n < body.mesh.num_nodes(); ++n) {
+    for (int axis = 0; axis < planes; ++axis) {
+      if (body.mesh.nodes(axis, n) < 1e-9) body.fixed_components.push_back({n, axis});
+    }
+  }
+  return body;
+}
+
+TEST(Body, HeldByThreePlanesOfSymmetryIsAccepted) { EXPECT_EQ(Refusal(HeldBySymmetry(3)), ""); }
+
+TEST(Body, HeldByTwoPlanesOfSymmetryCanDriftAndIsRefused) {
+  EXPECT_THAT(Refusal(HeldBySymmetry(2)), ::testing::HasSubstr("drifting"));
 }
 
 TEST(Body, ThatIsHeldEverywhereIsRefused) {

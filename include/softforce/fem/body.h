@@ -18,18 +18,25 @@ struct Cable {
   Eigen::Vector3d guide;                   // m, robot frame
 };
 
+// One component of a node's displacement that is held at zero: a plane of symmetry, a sliding
+// support.
+struct FixedComponent {
+  int node = 0;
+  int axis = 0;  // 0, 1, 2: x, y, z
+};
+
 // A soft body: cells, what they are made of, where they are held, and what pulls them.
 struct Body {
-  mesh::TetMesh mesh;               // 4- or 10-node cells, at rest
-  std::vector<Material> materials;  // of each region of the mesh
-  std::vector<int> fixed_nodes;     // do not move
+  mesh::TetMesh mesh;                            // 4- or 10-node cells, at rest
+  std::vector<Material> materials;               // of each region of the mesh
+  std::vector<int> fixed_nodes;                  // do not move
+  std::vector<FixedComponent> fixed_components;  // besides those of the fixed nodes
   std::vector<Cable> cables;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // m/s²
   double density = 0;                                 // kg/m³
 
-  // Throws InputError, naming `where`, if any part of the body that hangs together is held at fewer
-  // than three points that span a plane, so that it could drift or spin away, or if a material is
-  // out of range.
+  // Throws InputError, naming `where`, if any part of the body that hangs together could drift or
+  // spin away, or if a material or a cable is of no use.
   void Check(const std::string& where) const;
 };
 
