@@ -52,7 +52,7 @@ void YardstickFactorisation(benchmark::State& state) {
   const fem::Elements elements(sheet.body);
   fem::TangentAssembler assembler(sheet.body, elements);
   const Eigen::Matrix3Xd u = Eigen::Matrix3Xd::Zero(3, sheet.body.mesh.num_nodes());
-  assembler.Assemble(elements, u, {});
+  assembler.Assemble(elements, u, {}, {});
   fem::Cholesky cholesky(assembler.matrix());
   for (auto _ : state) benchmark::DoNotOptimize(cholesky.Factorise(assembler.matrix()));
 }
@@ -62,7 +62,7 @@ void TangentAssembly(benchmark::State& state) {
   const fem::Elements elements(sheet.body);
   fem::TangentAssembler assembler(sheet.body, elements);
   const Eigen::Matrix3Xd u = Eigen::Matrix3Xd::Zero(3, sheet.body.mesh.num_nodes());
-  for (auto _ : state) assembler.Assemble(elements, u, {});
+  for (auto _ : state) assembler.Assemble(elements, u, {}, {});
 }
 
 void InternalForces(benchmark::State& state) {

@@ -110,12 +110,12 @@ int ForceEstimator::FirstComponent(int site) const {
 }
 
 fem::LoadCase ForceEstimator::LoadOf(const Eigen::VectorXd& intensity,
-                                     const std::vector<fem::CableCommand>& commands) const {
-  return {(H_f_ * intensity).reshaped(3, H_f_.rows() / 3), commands};
+                                     const fem::Actuation& actuation) const {
+  return {(H_f_ * intensity).reshaped(3, H_f_.rows() / 3), actuation};
 }
 
-fem::SolveSummary ForceEstimator::Advance(const std::vector<fem::CableCommand>& commands) {
-  fem::SolveSummary summary = solver_->Solve(LoadOf(intensity_, commands), &state_);
+fem::SolveSummary ForceEstimator::Advance(const fem::Actuation& actuation) {
+  fem::SolveSummary summary = solver_->Solve(LoadOf(intensity_, actuation), &state_);
   if (summary.ok() && !RefreshCompliance()) {
     summary.status = fem::SolveSummary::Status::kNotConverged;
   }
@@ -167,7 +167,7 @@ std::vector<WhitenedObservation> ForceEstimator::Whiten(
 }
 
 ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observations,
-                                       const std::vector<fem::CableCommand>& commands) {
+                                       const fem::Actuation& actuation) {
   const fem::Equilibrium before = state_;
   const Eigen::VectorXd intensity_before = intensity_;
   ForceEstimate estimate;
@@ -176,7 +176,7 @@ ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observati
     estimate = ForceEstimate();
     estimate.rejected.assign(observations.size(), 0);
     FitAndReject(Whiten(observations, scale, &estimate), options_.common_model_error * scale,
-                 commands, &estimate);
+                 actuation, &estimate);
     // The model's error goes with how far the body has moved, which only the fit tells: after a
     // jump, fit again.
     const double fitted = LargestDisplacement(observations);
@@ -194,9 +194,8 @@ ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observati
 }
 
 void ForceEstimator::FitAndReject(std::vector<WhitenedObservation> used, double common_sd,
-                                  const std::vector<fem::CableCommand>& commands,
-                                  ForceEstimate* estimate) {
-  const BodyResponse body = Response(commands, estimate);
+                                  const fem::Actuation& actuation, ForceEstimate* estimate) {
+  const BodyResponse body = Response(actuation, estimate);
   const int n = num_components();
   const int most_rejected = static_cast<int>(options_.max_rejected_share *
                                              static_cast<double>(estimate->rejected.size()));
@@ -243,10 +242,9 @@ void ForceEstimator::FitAndReject(std::vector<WhitenedObservation> used, double 
   }
 }
 
-BodyResponse ForceEstimator::Response(const std::vector<fem::CableCommand>& commands,
-                                      ForceEstimate* estimate) {
+BodyResponse ForceEstimator::Response(const fem::Actuation& actuation, ForceEstimate* estimate) {
   BodyResponse body;
-  body.move = [this, commands, estimate](const Eigen::VectorXd& intensity) {
+  body.move = [this, actuation, estimate](const Eigen::VectorXd& intensity) {
     if (!intensity.allFinite()) return false;
     // A small change starts from the linear answer; Newton's method does the rest. Over a large one
     // the linear answer stretches what should turn, and the old shape is the better start.
@@ -258,7 +256,7 @@ BodyResponse ForceEstimator::Response(const std::vector<fem::CableCommand>& comm
       predicted = du.colwise().norm().maxCoeff() <= options_.max_staleness;
       if (predicted) trial.u += du;
     }
-    const fem::LoadCase load = LoadOf(intensity, commands);
+    const fem::LoadCase load = LoadOf(intensity, actuation);
     fem::SolveSummary summary = solver_->Solve(load, &trial);
     if (!summary.ok() && predicted) {
       trial = state_;

@@ -32,6 +32,35 @@ std::vector<int> Parts(const mesh::TetMesh& mesh) {
   return parent;
 }
 
+// Refuses walls with an open rim that could move: pressure would escape, and its work depend on the
+// way that the rim goes.
+void CheckClosed(const Chamber& chamber, const mesh::TetMesh& mesh, const std::set<int>& fixed,
+                 const std::string& where) {
+  std::map<std::pair<int, int>, int> walls_at;  // edge, both ways round → walls
+  for (Eigen::Index t = 0; t < chamber.walls.cols(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      ++walls_at[std::minmax(int{chamber.walls(i, t)}, int{chamber.walls((i + 1) % 3, t)})];
+    }
+  }
+  int open = 0;
+  Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();
+  for (const auto& [edge, walls] : walls_at) {
+    const bool held = fixed.count(edge.first) > 0 && fixed.count(edge.second) > 0;
+    if (walls % 2 == 0 || held) continue;
+    if (open++ == 0) {
+      at_mm = 500 * (mesh.nodes.col(edge.first) + mesh.nodes.col(edge.second));
+    }
+  }
+  if (open == 0) return;
+  throw base::InputError(
+      where,
+      fmt::format("its walls are not closed: {} edges border on one triangle only, the first "
+                  "at ({:.1f} {:.1f} {:.1f}) mm; every edge must join two triangles, or lie where "
+                  "the body is fixed",
+                  open, at_mm.x(), at_mm.y(), at_mm.z()),
+      "Name the whole inside of the hollow as one surface group.");
+}
+
 // Whether holding these components of displacement at zero leaves no rigid motion: the six motions
 // v + ω × (X − centre), seen at the held components, are then independent.
 bool KeepsFromMoving(const std::vector<FixedComponent>& held, const Eigen::Matrix3Xd& X) {
@@ -77,6 +106,10 @@ void Body::Check(const std::string& where) const {
       throw base::InputError(fmt::format("{}: cable \"{}\"", where, cable.name),
                              "ends where its guide is, so that it has no direction");
     }
+  }
+
+  for (const Chamber& chamber : chambers) {
+    CheckClosed(chamber, mesh, fixed, fmt::format("{}: chamber \"{}\"", where, chamber.name));
   }
 
   std::vector<FixedComponent> held = fixed_components;

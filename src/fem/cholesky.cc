@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "fem/single_factor.h"
+
 namespace softforce::fem {
 namespace {
 
@@ -31,6 +33,9 @@ class OneThread {
 struct Cholesky::State {
   cholmod_common common;
   cholmod_factor* factor = nullptr;
+  SingleFactor rounded;
+  cholmod_dense *solution = nullptr, *work_y = nullptr,
+                *work_e = nullptr;  // kept from solve to solve
 
   State() {
     cholmod_start(&common);
@@ -43,6 +48,9 @@ struct Cholesky::State {
   }
   ~State() {
     cholmod_free_factor(&factor, &common);
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&work_y, &common);
+    cholmod_free_dense(&work_e, &common);
     cholmod_finish(&common);
   }
   State(const State&) = delete;
@@ -80,27 +88,38 @@ Cholesky::Cholesky(const LowerBlocks& pattern) : state_(std::make_unique<State>(
 
 Cholesky::~Cholesky() = default;
 
-bool Cholesky::Factorise(const LowerBlocks& matrix) {
+bool Cholesky::Factorise(const LowerBlocks& matrix, double shift) {
   const OneThread guard;
   cholmod_sparse view = View(matrix);
-  cholmod_factorize(&view, state_->factor, &state_->common);
-  return state_->common.status == CHOLMOD_OK;
+  double beta[2] = {shift, 0};
+  cholmod_factorize_p(&view, beta, nullptr, 0, state_->factor, &state_->common);
+  if (state_->common.status != CHOLMOD_OK) return false;
+  state_->rounded.Take(*state_->factor);
+  return true;
 }
 
-void Cholesky::SolveInPlace(Eigen::MatrixXd* b) const {
+Eigen::VectorXd Cholesky::SolveRoughly(const Eigen::VectorXd& b) const {
+  const OneThread guard;
+  return state_->rounded.Solve(b);
+}
+
+void Cholesky::SolveInPlace(Eigen::Ref<Eigen::MatrixXd> b) const {
   const OneThread guard;
   cholmod_dense rhs;
   std::memset(&rhs, 0, sizeof(rhs));
-  rhs.nrow = rhs.d = b->rows();
-  rhs.ncol = b->cols();
-  rhs.nzmax = b->size();
-  rhs.x = b->data();
+  rhs.nrow = b.rows();
+  rhs.d = b.outerStride();
+  rhs.ncol = b.cols();
+  rhs.nzmax = rhs.d * rhs.ncol;
+  rhs.x = b.data();
   rhs.xtype = CHOLMOD_REAL;
   rhs.dtype = CHOLMOD_DOUBLE;
-  cholmod_dense* x = cholmod_solve(CHOLMOD_A, state_->factor, &rhs, &state_->common);
-  assert(x != nullptr);
-  std::memcpy(b->data(), x->x, sizeof(double) * b->size());
-  cholmod_free_dense(&x, &state_->common);
+  State& s = *state_;
+  cholmod_solve2(CHOLMOD_A, s.factor, &rhs, nullptr, &s.solution, nullptr, &s.work_y, &s.work_e,
+                 &s.common);
+  assert(s.common.status == CHOLMOD_OK);
+  b = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(s.solution->x), b.rows(),
+                                        b.cols());
 }
 
 }  // namespace softforce::fem

@@ -16,11 +16,15 @@ class Cholesky {
   explicit Cholesky(const LowerBlocks& pattern);
   ~Cholesky();
 
-  // False if the matrix is not positive definite; the factor is then unusable.
-  bool Factorise(const LowerBlocks& matrix);
+  // Factorises matrix + shift · identity. False if that is not positive definite; the factor is
+  // then unusable.
+  bool Factorise(const LowerBlocks& matrix, double shift = 0);
+
+  // One solution in single precision, at a third to half of the time.
+  Eigen::VectorXd SolveRoughly(const Eigen::VectorXd& b) const;
 
   // Replaces the columns of `b` by the solutions.
-  void SolveInPlace(Eigen::MatrixXd* b) const;
+  void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> b) const;
 
  private:
   struct State;

@@ -103,6 +103,26 @@ double Elements::EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* fo
                                    : EnergyAndForcesOf<4>(u, forces);
 }
 
+int Elements::InvertedElement(const Eigen::Matrix3Xd& u) const {
+  const int n = nodes_per_element();
+  Eigen::Matrix3Xd u_e(3, n);
+  for (int e = 0; e < num_elements(); ++e) {
+    if (HasBarrier(material_of_[e].model)) continue;
+    for (int i = 0; i < n; ++i) u_e.col(i) = u.col(nodes_(i, e));
+    for (int p = 0; p < num_points(); ++p) {
+      const Eigen::Map<const Eigen::Matrix3Xd> g(gradients(e, p), 3, n);
+      if (!((Eigen::Matrix3d::Identity() + u_e * g.transpose()).determinant() > 0)) return e;
+    }
+  }
+  return -1;
+}
+
+Eigen::Vector3d Elements::Centre(int element, const Eigen::Matrix3Xd& x) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 4; ++i) sum += x.col(nodes_(i, element));
+  return sum / 4;
+}
+
 template <int kNodes>
 void Elements::Stiffness(int element, const Eigen::Matrix3Xd& u,
                          Eigen::Matrix<double, 3 * kNodes, 3 * kNodes>* K) const {

@@ -23,6 +23,13 @@ class Elements {
   // inside out.
   double EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const;
 
+  // The first element that is inside out (J ≤ 0) at an integration point, −1 if none is. The
+  // neo-Hookean laws never let that happen; the others may.
+  int InvertedElement(const Eigen::Matrix3Xd& u) const;
+
+  // Mean of an element's corners when the nodes stand at `x`, m.
+  Eigen::Vector3d Centre(int element, const Eigen::Matrix3Xd& x) const;
+
   // The stiffness of one cell, symmetric, 3n×3n with index 3·local + component, N/m.
   template <int kNodes>
   void Stiffness(int element, const Eigen::Matrix3Xd& u,

@@ -172,6 +172,10 @@ std::optional<MaterialModel> MaterialModelByName(const std::string& name) {
   return std::nullopt;
 }
 
+bool HasBarrier(MaterialModel model) {
+  return model == MaterialModel::kNeoHookean || model == MaterialModel::kNeoHookeanLogarithmic;
+}
+
 void Material::Check(const std::string& where) const {
   if (!(youngs_modulus > 0) || !std::isfinite(youngs_modulus)) {
     throw base::InputError(where + ": youngs_modulus",

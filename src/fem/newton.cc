@@ -1,19 +1,21 @@
 // Newton's method for the static equilibrium: see the class comment of StaticSolver.
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
-#include <limits>
 
+#include "fem/progress.h"
 #include "fem/static_solver_state.h"
 
 namespace softforce::fem {
+namespace {
 
-StaticSolver::State::Balance StaticSolver::State::Evaluate(const LoadCase& load,
-                                                           const Eigen::Matrix3Xd& u) const {
-  const Eigen::Matrix3Xd dead = load.forces + weight;
-  Balance balance;
-  balance.unbalanced = -dead;
-  balance.energy = elements.EnergyAndForces(u, &balance.unbalanced) - dead.cwiseProduct(u).sum();
-  return balance;
+constexpr int kFreshSteps = 2;  // that a small change of load takes with a fresh factor
+
+}  // namespace
+
+// Why an iteration got no further.
+SolveSummary::Status StaticSolver::State::StalledStatus() const {
+  return inverse.shift() > 0 ? SolveSummary::Status::kUnstable
+                             : SolveSummary::Status::kNotConverged;
 }
 
 // Potential energy, and for the cables held at a length the augmented Lagrangian
@@ -24,78 +26,75 @@ double StaticSolver::State::Merit(const Balance& balance, const Eigen::Matrix3Xd
   return balance.energy + step.tension.dot(gap) + 0.5 * step.penalty.dot(gap.cwiseAbs2());
 }
 
-// K du = −unbalanced − Σ t G with G·du = −gap for each cable held at a length; a cable whose
-// tension would come out negative is slack instead.
-bool StaticSolver::State::MakeStep(const LoadCase& load, const Equilibrium& at,
-                                   const Eigen::Matrix3Xd& unbalanced, Step* step) const {
+// The cables commanded by displacement, unless slack; sets what is known of the step beforehand.
+std::vector<int> StaticSolver::State::CablesToHold(const LoadCase& load, const Equilibrium& at,
+                                                   const Eigen::VectorXd& length,
+                                                   Step* step) const {
   const int n = num_cables();
-  const Eigen::MatrixXd G = CableGradients(at.u);
-  const Eigen::VectorXd length = CableLengths(at.u);
   step->tension = Eigen::VectorXd::Zero(n);
   step->penalty = Eigen::VectorXd::Zero(n);
   step->target = rest_length;
   std::vector<int> held;
   for (int c = 0; c < n; ++c) {
-    if (load.commands[c].input == CableInput::kTension) {
-      step->tension(c) = load.commands[c].value;
-    } else {
-      step->target(c) = rest_length(c) - load.commands[c].value;
-      const bool slack = at.tension(c) <= 0 && length(c) < step->target(c) - 1e-12 * diagonal;
-      if (!slack) held.push_back(c);
-    }
-  }
-
-  Eigen::MatrixXd rhs(3 * assembler.num_free_nodes(), 1 + held.size());
-  rhs.col(0) = -Gather(unbalanced.reshaped() + G * step->tension);
-  rhs.rightCols(held.size()) = Gather(G(Eigen::all, held));
-  Eigen::MatrixXd solved = rhs;
-  cholesky.SolveInPlace(&solved);
-
-  // Tensions of the held cables; drop the most pushing one until none pushes.
-  Eigen::VectorXd du = solved.col(0);
-  std::vector<int> used(held.size());
-  for (size_t i = 0; i < used.size(); ++i) used[i] = static_cast<int>(i);
-  while (!used.empty()) {
-    const int m = static_cast<int>(used.size());
-    Eigen::MatrixXd compliance(m, m);
-    Eigen::VectorXd wanted(m);
-    for (int i = 0; i < m; ++i) {
-      const int c = held[used[i]];
-      wanted(i) = rhs.col(1 + used[i]).dot(solved.col(0)) + length(c) - step->target(c);
-      for (int j = 0; j < m; ++j) {
-        compliance(i, j) = rhs.col(1 + used[i]).dot(solved.col(1 + used[j]));
-      }
-    }
-    const Eigen::VectorXd tension = compliance.ldlt().solve(wanted);
-    int lowest = 0;
-    if (tension.minCoeff(&lowest) < 0) {
-      used.erase(used.begin() + lowest);
+    const CableCommand& command = load.actuation.cables[c];
+    if (command.input == CableInput::kTension) {
+      step->tension(c) = command.value;
       continue;
     }
-    for (int i = 0; i < m; ++i) {
-      step->tension(held[used[i]]) = tension(i);
-      step->penalty(held[used[i]]) = 1 / compliance(i, i);
-      du -= tension(i) * solved.col(1 + used[i]);
+    step->target(c) = rest_length(c) - command.value;
+    const bool slack = at.tension(c) <= 0 && length(c) < step->target(c) - 1e-12 * diagonal;
+    if (slack) continue;
+    held.push_back(c);
+    step->tension(c) = std::max(0.0, at.tension(c));
+  }
+  return held;
+}
+
+// K du = −residual − Σ dt G with G·du = −gap for each cable held at a length, the residual that
+// under the tensions at hand and dt their change; a cable whose tension would come out negative is
+// slack instead. The cables' own columns Z = K⁻¹G are those of the last factorisation: G·du = −gap
+// holds all the same, and what du is off by the next step corrects.
+bool StaticSolver::State::MakeStep(const LoadCase& load, const Equilibrium& at,
+                                   const Eigen::Matrix3Xd& unbalanced, Step* step) const {
+  const Eigen::VectorXd length = CableLengths(at.u);
+  std::vector<int> held = CablesToHold(load, at, length, step);
+  const Eigen::MatrixXd G = Gather(CableGradients(at.u));
+  const Eigen::VectorXd free_unbalanced = Gather(unbalanced.reshaped());
+  Eigen::VectorXd& du = step->free_du;
+  du = inverse.Apply(-(free_unbalanced + G * step->tension));
+
+  // Drop the most pushing cable until none pushes.
+  while (!held.empty()) {
+    const Eigen::MatrixXd G_held = G(Eigen::all, held);
+    const Eigen::MatrixXd Z_held = cable_columns(Eigen::all, held);
+    const Eigen::MatrixXd compliance = G_held.transpose() * Z_held;
+    const Eigen::VectorXd gap = (length - step->target)(held);
+    const Eigen::VectorXd change = compliance.partialPivLu().solve(G_held.transpose() * du + gap);
+    int lowest = 0;
+    if ((step->tension(held) + change).minCoeff(&lowest) < 0) {
+      const int slack = held[lowest];
+      du += cable_columns.col(slack) * step->tension(slack);
+      step->tension(slack) = 0;
+      held.erase(held.begin() + lowest);
+      continue;
     }
+    step->tension(held) += change;
+    step->penalty(held) = compliance.diagonal().cwiseInverse();
+    du -= Z_held * change;
     break;
   }
   step->du = Scatter(du).reshaped(3, body.mesh.num_nodes());
-
-  const Eigen::VectorXd residual = unbalanced.reshaped() + G * step->tension;
-  step->slope = residual.dot(step->du.reshaped());
-  for (int c = 0; c < n; ++c) {
-    if (step->penalty(c) == 0) continue;
-    step->slope +=
-        step->penalty(c) * (length(c) - step->target(c)) * G.col(c).dot(step->du.reshaped());
-  }
-  return std::isfinite(step->slope) && step->du.allFinite();
+  step->free_residual = free_unbalanced + G * step->tension;
+  step->slope = step->free_residual.dot(du) +
+                step->penalty.cwiseProduct(length - step->target).dot(G.transpose() * du);
+  return step->slope <= 0 && du.allFinite();
 }
 
 // The share of the step at which the merit has fallen enough: 1, 1/2, … , or 0 if it never does.
 // Close to the solution the merit's change drowns in rounding, and the whole step is right.
 // `balance` is that of the start, and becomes that of the place found.
 double StaticSolver::State::SearchAlong(const LoadCase& load, const Equilibrium& at,
-                                        const Step& step, Balance* balance) const {
+                                        const Step& step, Balance* balance) {
   const double start = Merit(*balance, at.u, step);
   const double rounding = 1e-10 * std::abs(start) + 1e-13 * stiffness;
   for (double share = 1; share > 1e-4; share /= 2) {
@@ -110,36 +109,49 @@ double StaticSolver::State::SearchAlong(const LoadCase& load, const Equilibrium&
   return 0;
 }
 
-bool StaticSolver::State::Newton(const LoadCase& load, Equilibrium* state, SolveSummary* summary) {
-  const double tolerance = options.step_tolerance * diagonal;
-  double previous_move = std::numeric_limits<double>::infinity();
+SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, Equilibrium* state,
+                                                 SolveSummary* summary) {
+  const double tolerance = options.tolerance * diagonal;
   Balance balance = Evaluate(load, state->u);
-  if (!std::isfinite(balance.energy)) return false;  // a cell is inside out
+  if (!std::isfinite(balance.energy)) return SolveSummary::Status::kInverted;
+  Progress progress;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const bool fresh = !factor_valid;
     if (fresh) {
-      if (!Factorise(state->u, state->tension)) return false;
       ++summary->factorisations;
+      if (!Factorise(state->u, state->tension, load.actuation.pressures)) {
+        return SolveSummary::Status::kUnstable;
+      }
     }
-    Step step;
-    if (!MakeStep(load, *state, balance.unbalanced, &step)) return false;
     ++summary->iterations;
-
-    const double share = SearchAlong(load, *state, step, &balance);
+    Step step;
+    const bool falls = MakeStep(load, *state, balance.unbalanced, &step);
+    const double share = falls ? SearchAlong(load, *state, step, &balance) : 0;
     if (share == 0) {
-      if (fresh) return false;
+      if (fresh) return StalledStatus();
       factor_valid = false;  // an old tangent may have pointed the wrong way
       continue;
     }
+
     const double move = share * LargestMove(step.du);
     state->u += share * step.du;
     state->tension += share * (step.tension - state->tension);
+    const Eigen::MatrixXd residual =
+        Gather(balance.unbalanced.reshaped() + CableGradients(state->u) * step.tension);
+    inverse.Learn(share * step.free_du, residual - step.free_residual);
+
+    progress.Add(move, -step.slope);
     summary->last_step = move;
-    if (share == 1 && move <= tolerance) return true;
-    if (share < 1 || move > options.stale_contraction * previous_move) factor_valid = false;
-    previous_move = move;
+    if (share == 1 && (move <= tolerance || 2 * progress.remaining() <= tolerance)) {
+      return inverse.shift() > 0 ? SolveSummary::Status::kUnstable
+                                 : SolveSummary::Status::kConverged;
+    }
+    if (progress.steps() > kFreshSteps) ++wasted;
+    const double worth = options.factorisation_worth;
+    factor_valid = share == 1 && inverse.shift() == 0 &&
+                   wasted + progress.steps_left(tolerance) - kFreshSteps <= worth;
   }
-  return false;
+  return StalledStatus();
 }
 
 }  // namespace softforce::fem

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "fem/static_solver_state.h"
@@ -12,19 +13,68 @@
 namespace softforce::fem {
 
 void StaticSolverOptions::Check() const {
-  if (!(step_tolerance > 0)) throw base::InputError("step_tolerance", "must be greater than 0");
+  if (!(tolerance > 0)) throw base::InputError("tolerance", "must be greater than 0");
   if (max_iterations < 1) throw base::InputError("max_iterations", "must be 1 or more");
-  if (!(stale_contraction >= 0 && stale_contraction < 1)) {
-    throw base::InputError("stale_contraction", "must be at least 0 and below 1");
+  if (!(factorisation_worth >= 0)) {
+    throw base::InputError("factorisation_worth", "must be 0 or more");
   }
   if (max_load_halvings < 0) throw base::InputError("max_load_halvings", "must be 0 or more");
 }
 
+namespace {
+
+const char* Name(SolveSummary::Status status) {
+  switch (status) {
+    case SolveSummary::Status::kNotRun:
+      return "not run";
+    case SolveSummary::Status::kConverged:
+      return "converged";
+    case SolveSummary::Status::kNotConverged:
+      return "not converged";
+    case SolveSummary::Status::kUnstable:
+      return "unstable";
+    case SolveSummary::Status::kInverted:
+      return "a cell turns inside out";
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string SolveSummary::BriefReport() const {
   return fmt::format(
       "{} after {} iterations, {} factorisations, {} load steps; last step {:.2e} m{}",
-      ok() ? "converged" : "not converged", iterations, factorisations, load_steps, last_step,
-      ok() ? "" : fmt::format("; reached {:.0f} % of the load", 100 * reached_share));
+      Name(status), iterations, factorisations, load_steps, last_step,
+      ok() ? "" : fmt::format("; reached {:.0f} % of the change of load", 100 * reached_share));
+}
+
+std::string SolveSummary::Advice() const {
+  switch (status) {
+    case Status::kNotRun:
+    case Status::kConverged:
+      return "";
+    case Status::kNotConverged:
+      return "Check the units of loads and stiffness; spread point forces over a patch; otherwise "
+             "allow more iterations or load halvings.";
+    case Status::kUnstable:
+      return "The body buckles, snaps or bursts beyond that load. Check the units of loads and "
+             "stiffness; drive cables by displacement instead of tension, which holds the body "
+             "where a tension lets it go; lower the pressure.";
+    case Status::kInverted:
+      return fmt::format(
+          "The body is crushed around ({:.1f} {:.1f} {:.1f}) mm. Check the units of loads and "
+          "stiffness; spread the force over a patch; refine the mesh there; use neo_hookean, "
+          "which stiffens as it is crushed.",
+          1e3 * inverted_at.x(), 1e3 * inverted_at.y(), 1e3 * inverted_at.z());
+  }
+  return "";
+}
+
+Actuation NoActuation(const Body& body) {
+  Actuation none;
+  none.cables.resize(body.cables.size());
+  none.pressures.resize(body.chambers.size());
+  return none;
 }
 
 StaticSolver::StaticSolver(Body body, const std::string& where,
@@ -45,7 +95,7 @@ Equilibrium StaticSolver::AtRest() const {
   rest.u = Eigen::Matrix3Xd::Zero(3, n);
   rest.tension = rest.shortening = Eigen::VectorXd::Zero(cables);
   rest.load.forces = rest.u;
-  rest.load.commands.resize(cables);
+  rest.load.actuation = NoActuation(state_->body);
   return rest;
 }
 
@@ -53,13 +103,19 @@ namespace {
 
 // The load a share of the way from an equilibrium to a goal.
 LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
+  const auto mix = [share](double start, double end) { return (1 - share) * start + share * end; };
   LoadCase load = to;
   load.forces = (1 - share) * from.load.forces + share * to.forces;
-  for (size_t c = 0; c < load.commands.size(); ++c) {
+  for (size_t c = 0; c < load.actuation.cables.size(); ++c) {
     const int i = static_cast<int>(c);
-    const double start =
-        to.commands[c].input == CableInput::kTension ? from.tension(i) : from.shortening(i);
-    load.commands[c].value = (1 - share) * start + share * to.commands[c].value;
+    CableCommand& command = load.actuation.cables[c];
+    command.value =
+        mix(command.input == CableInput::kTension ? from.tension(i) : from.shortening(i),
+            command.value);
+  }
+  for (size_t k = 0; k < load.actuation.pressures.size(); ++k) {
+    load.actuation.pressures[k] =
+        mix(from.load.actuation.pressures[k], load.actuation.pressures[k]);
   }
   return load;
 }
@@ -67,31 +123,40 @@ LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
 }  // namespace
 
 SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
+  State& s = *state_;
+  assert(load.actuation.cables.size() == s.body.cables.size());
+  assert(load.actuation.pressures.size() == s.body.chambers.size());
   SolveSummary summary;
   const Equilibrium from = *state;
   double reached = 0;
   double stride = 1;
-  const double least = std::ldexp(1.0, -state_->options.max_load_halvings);
+  const double least = std::ldexp(1.0, -s.options.max_load_halvings);
   while (reached < 1) {
     const double next = std::min(1.0, reached + stride);
     Equilibrium trial = *state;
-    const LoadCase target = next < 1 ? Between(from, load, next) : load;
+    trial.load = next < 1 ? Between(from, load, next) : load;
     ++summary.load_steps;
-    if (state_->Newton(target, &trial, &summary)) {
-      trial.load = target;
-      trial.shortening = state_->rest_length - state_->CableLengths(trial.u);
+    summary.inverted_element = -1;
+    summary.status = s.Newton(trial.load, &trial, &summary);
+    if (summary.ok()) {
+      summary.inverted_element = s.elements.InvertedElement(trial.u);
+      if (summary.inverted_element >= 0) summary.status = SolveSummary::Status::kInverted;
+    }
+    if (summary.ok()) {
+      trial.shortening = s.rest_length - s.CableLengths(trial.u);
       *state = std::move(trial);
       reached = next;
       stride = std::min(2 * stride, 1.0);
     } else {
-      state_->factor_valid = false;
+      s.factor_valid = false;
       stride /= 2;
       if (stride < least) break;
     }
   }
   summary.reached_share = reached;
-  summary.status =
-      reached >= 1 ? SolveSummary::Status::kConverged : SolveSummary::Status::kNotConverged;
+  if (summary.inverted_element >= 0) {
+    summary.inverted_at = s.elements.Centre(summary.inverted_element, s.body.mesh.nodes);
+  }
   return summary;
 }
 
@@ -99,12 +164,13 @@ Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd&
                                 double max_staleness) {
   State& s = *state_;
   Sensitivity sensitivity;
-  if (!s.factor_valid || LargestMove(state.u - s.factor_u) > max_staleness) {
-    if (!s.Factorise(state.u, state.tension)) return sensitivity;
+  if (!s.factor_valid || s.inverse.shift() > 0 ||
+      LargestMove(state.u - s.factor_u) > max_staleness) {
+    if (!s.StableAt(state)) return sensitivity;
   }
   std::vector<int> held;
   for (int c = 0; c < s.num_cables(); ++c) {
-    const bool displacement = state.load.commands[c].input == CableInput::kDisplacement;
+    const bool displacement = state.load.actuation.cables[c].input == CableInput::kDisplacement;
     if (displacement && state.tension(c) > 0) held.push_back(c);
   }
   const int k = static_cast<int>(forces.cols());
@@ -113,7 +179,7 @@ Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd&
   rhs.leftCols(k) = s.Gather(forces);
   rhs.rightCols(m) = s.Gather(s.CableGradients(state.u)(Eigen::all, held));
   Eigen::MatrixXd solved = rhs;
-  s.cholesky.SolveInPlace(&solved);
+  s.inverse.ApplyFactor(solved);
 
   sensitivity.ok = true;
   sensitivity.d_tension = Eigen::MatrixXd::Zero(s.num_cables(), k);

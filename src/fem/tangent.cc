@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fem/cable_path.h"
+#include "fem/chamber_volume.h"
 
 namespace softforce::fem {
 
@@ -143,7 +144,8 @@ void TangentAssembler::AddCells(const Elements& elements, const Eigen::Matrix3Xd
 }
 
 void TangentAssembler::Assemble(const Elements& elements, const Eigen::Matrix3Xd& u,
-                                const Eigen::VectorXd& tension) {
+                                const Eigen::VectorXd& tension,
+                                const std::vector<double>& pressures) {
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   if (elements.nodes_per_element() == 10) {
     AddCells<10>(elements, u);
@@ -151,11 +153,14 @@ void TangentAssembler::Assemble(const Elements& elements, const Eigen::Matrix3Xd
     AddCells<4>(elements, u);
   }
   const Eigen::Matrix3Xd x = body_.mesh.nodes + u;
+  const auto add = [&](int i, int j, const Eigen::Matrix3d& K_ij) { AddSymmetric(i, j, K_ij); };
   for (size_t c = 0; c < body_.cables.size(); ++c) {
-    if (tension(static_cast<int>(c)) == 0) continue;
-    ForEachCableStiffness(
-        body_.cables[c], x, tension(static_cast<int>(c)),
-        [&](int i, int j, const Eigen::Matrix3d& K_ij) { AddSymmetric(i, j, K_ij); });
+    const double t = tension(static_cast<int>(c));
+    if (t != 0) ForEachCableStiffness(body_.cables[c], x, t, add);
+  }
+  for (size_t k = 0; k < body_.chambers.size(); ++k) {
+    if (pressures[k] == 0) continue;
+    ForEachChamberVolumeCurvature(body_.chambers[k], x, -pressures[k], add);
   }
   HoldComponents();
 }

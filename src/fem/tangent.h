@@ -32,10 +32,10 @@ class TangentAssembler {
   // there, times its own mean diagonal.
   const std::vector<int>& held() const { return held_; }
 
-  // K at displacement u, with the stiffness that the tensions add by the cables' changes of
-  // direction.
-  void Assemble(const Elements& elements, const Eigen::Matrix3Xd& u,
-                const Eigen::VectorXd& tension);
+  // K at displacement u, with the stiffness of the loads that follow the body: tensions turn with
+  // their cables, pressures with the walls.
+  void Assemble(const Elements& elements, const Eigen::Matrix3Xd& u, const Eigen::VectorXd& tension,
+                const std::vector<double>& pressures);
   const LowerBlocks& matrix() const { return matrix_; }
 
  private:

@@ -44,17 +44,20 @@ void PendingTable::Commit() {
   file_.Commit();
 }
 
-ResultTables::ResultTables(const std::filesystem::path& folder, bool with_actuation)
+ResultTables::ResultTables(const std::filesystem::path& folder, ActuatorKinds kinds)
     : forces_(folder / "forces.csv",
               "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_"
               "N,fy_N,"
               "fz_N,norm_N,sd_x_N,sd_y_N,sd_z_N,sd_location_mm"),
       markers_(folder / "markers.csv",
                "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,"
-               "residual_mm") {
-  if (with_actuation) {
-    actuation_.emplace(folder / "actuation.csv", "frame,time_s,actuator,tension_N,displacement_mm");
-  }
+               "residual_mm"),
+      kinds_(kinds) {
+  if (!kinds.cables && !kinds.chambers) return;
+  actuation_.emplace(
+      folder / "actuation.csv",
+      fmt::format("frame,time_s,actuator{}{}", kinds.cables ? ",tension_N,displacement_mm" : "",
+                  kinds.chambers ? ",pressure_kPa" : ""));
 }
 
 void ResultTables::Add(const FrameResult& result) {
@@ -78,8 +81,12 @@ void ResultTables::Add(const FrameResult& result) {
   }
   if (!actuation_) return;
   for (const CableResult& cable : result.cables) {
-    fmt::print(actuation_->stream(), "{},{},{},{}\n", moment, cable.name, Cell(cable.tension, 6),
-               Cell(1e3 * cable.displacement, 5));
+    fmt::print(actuation_->stream(), "{},{},{},{}{}\n", moment, cable.name, Cell(cable.tension, 6),
+               Cell(1e3 * cable.displacement, 5), kinds_.chambers ? "," : "");
+  }
+  for (const ChamberResult& chamber : result.chambers) {
+    fmt::print(actuation_->stream(), "{},{}{},{}\n", moment, chamber.name,
+               kinds_.cables ? ",," : "", Cell(1e-3 * chamber.pressure, 5));
   }
 }
 

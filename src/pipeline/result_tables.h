@@ -25,10 +25,16 @@ class PendingTable {
   std::ofstream stream_;
 };
 
+// The kinds of actuators that a scene has: each has columns of its own.
+struct ActuatorKinds {
+  bool cables = false;
+  bool chambers = false;
+};
+
 // forces.csv, markers.csv and, for a scene with actuators, actuation.csv.
 class ResultTables {
  public:
-  ResultTables(const std::filesystem::path& folder, bool with_actuation);
+  ResultTables(const std::filesystem::path& folder, ActuatorKinds kinds);
 
   void Add(const FrameResult& result);
   void Commit();
@@ -36,6 +42,7 @@ class ResultTables {
  private:
   PendingTable forces_;
   PendingTable markers_;
+  ActuatorKinds kinds_;
   std::optional<PendingTable> actuation_;
 };
 

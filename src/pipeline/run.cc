@@ -39,8 +39,7 @@ std::vector<vision::Recording::Source> Sources(const scene::Scene& scene,
 // amplified.
 double IndexW(const World& world) {
   estimation::ForceEstimator estimator(world.solver.get(), world.sites);
-  const std::vector<fem::CableCommand> no_tension(world.solver->body().cables.size());
-  if (!estimator.Advance(no_tension).ok()) return NAN;
+  if (!estimator.Advance(fem::NoActuation(world.solver->body())).ok()) return NAN;
   Eigen::MatrixXd W(3 * world.markers.size(), estimator.num_components());
   for (size_t m = 0; m < world.markers.size(); ++m) {
     W.middleRows<3>(3 * static_cast<Eigen::Index>(m)) =
@@ -200,7 +199,8 @@ RunReport Job::Finish() {
   const auto start = std::chrono::steady_clock::now();
   PrepareFolder(options_.out);
   LogSetUp();
-  ResultTables tables(options_.out, !scene_.actuators.empty());
+  const fem::Body& body = world_.solver->body();
+  ResultTables tables(options_.out, {!body.cables.empty(), !body.chambers.empty()});
   std::optional<OverlayVideo> overlay;
   if (options_.overlay) {
     overlay.emplace(options_.out / "overlay.mp4", scene_, world_, rig_, standing_.T_rig_robot,

@@ -76,8 +76,8 @@ FrameResult Tracker::Process(int frame, double time_s,
   FrameResult result;
   result.frame = frame;
   result.time_s = time_s;
-  const std::vector<fem::CableCommand> commands = CommandsAt(scene_, time_s);
-  const fem::SolveSummary advanced = estimator_.Advance(commands);
+  const fem::Actuation actuation = ActuationAt(scene_, time_s);
+  const fem::SolveSummary advanced = estimator_.Advance(actuation);
 
   // Over frames without forces the body may have gone further.
   const double threshold =
@@ -102,7 +102,7 @@ FrameResult Tracker::Process(int frame, double time_s,
         {point.weights, point.offset, located[f].position, located[f].whitening});
     feature_of.push_back(f);
   }
-  const estimation::ForceEstimate estimate = estimator_.Estimate(observations, commands);
+  const estimation::ForceEstimate estimate = estimator_.Estimate(observations, actuation);
 
   std::vector<char> rejected(located.size(), 0);
   for (size_t i = 0; i < feature_of.size(); ++i) rejected[feature_of[i]] = estimate.rejected[i];
@@ -120,6 +120,9 @@ FrameResult Tracker::Process(int frame, double time_s,
     const auto i = static_cast<Eigen::Index>(c);
     result.cables.push_back({world_.solver->body().cables[c].name, estimator_.state().tension(i),
                              estimator_.state().shortening(i)});
+  }
+  for (size_t k = 0; k < actuation.pressures.size(); ++k) {
+    result.chambers.push_back({world_.solver->body().chambers[k].name, actuation.pressures[k]});
   }
   return result;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "pipeline/actuators.h"
+#include "pipeline/group_triangles.h"
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/read_mesh.h"
 
@@ -39,36 +41,6 @@ std::vector<fem::Material> MaterialsOf(const scene::Scene& scene, const mesh::Te
   return materials;
 }
 
-std::string GroupNames(const mesh::TetMesh& mesh) {
-  std::vector<std::string> names;
-  for (const auto& [name, triangles] : mesh.surface_groups) names.push_back(name);
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
-}
-
-// All nodes, with those between corners, of the surface triangles of a named group.
-std::set<int> NodesOfGroup(const std::string& group, const mesh::TetMesh& mesh,
-                           const mesh::Surface& surface, const std::string& where) {
-  const auto found = mesh.surface_groups.find(group);
-  if (found == mesh.surface_groups.end()) {
-    throw base::InputError(where, fmt::format("the mesh has no surface group \"{}\"; it has: {}",
-                                              group, GroupNames(mesh)));
-  }
-  std::set<std::array<int, 3>> wanted;
-  for (std::array<int, 3> corners : found->second) {
-    std::sort(corners.begin(), corners.end());
-    wanted.insert(corners);
-  }
-  std::set<int> nodes;
-  for (int t = 0; t < surface.num_triangles(); ++t) {
-    std::array<int, 3> corners{surface.triangles(0, t), surface.triangles(1, t),
-                               surface.triangles(2, t)};
-    std::sort(corners.begin(), corners.end());
-    if (wanted.count(corners) == 0) continue;
-    for (int i = 0; i < surface.triangles.rows(); ++i) nodes.insert(surface.triangles(i, t));
-  }
-  return nodes;
-}
-
 std::vector<int> FixedNodes(const scene::Scene& scene, const mesh::TetMesh& mesh,
                             const mesh::Surface& surface) {
   constexpr double kRounding = 1e-9;  // m; so that a box flush with a face includes it
@@ -78,7 +50,9 @@ std::vector<int> FixedNodes(const scene::Scene& scene, const mesh::TetMesh& mesh
     const std::string where = fmt::format("{}: body: fixed: [{}]", scene.file.string(), i);
     std::set<int> nodes;
     if (!region.group.empty()) {
-      nodes = NodesOfGroup(region.group, mesh, surface, where);
+      for (const int t : GroupTriangles(region.group, mesh, surface, where)) {
+        nodes.insert(surface.triangles.col(t).begin(), surface.triangles.col(t).end());
+      }
     } else {
       for (int node = 0; node < mesh.num_nodes(); ++node) {
         const Eigen::Vector3d X = mesh.nodes.col(node);
@@ -101,26 +75,6 @@ std::vector<int> FixedNodes(const scene::Scene& scene, const mesh::TetMesh& mesh
     fixed.insert(nodes.begin(), nodes.end());
   }
   return {fixed.begin(), fixed.end()};
-}
-
-std::vector<fem::Cable> Cables(const scene::Scene& scene, const mesh::TetMesh& mesh,
-                               const mesh::Surface& surface) {
-  std::vector<fem::Cable> cables;
-  for (const scene::Actuator& actuator : scene.actuators) {
-    const std::string where =
-        fmt::format("{}: actuators: \"{}\"", scene.file.string(), actuator.name);
-    if (actuator.type != scene::ActuatorType::kCable) {
-      throw base::InputError(where, "pressure chambers are not available in this version",
-                             "Leave the actuator out, or describe it by cables.");
-    }
-    fem::Cable cable{actuator.name, {}, actuator.guide};
-    for (const Eigen::Vector3d& place : actuator.points) {
-      const BodyPoint point = PlaceOnSurface(surface, mesh.nodes, place, where + ": points");
-      cable.points.push_back(mesh::PatchWeights(surface, mesh.nodes, point.at, actuator.patch));
-    }
-    cables.push_back(std::move(cable));
-  }
-  return cables;
 }
 
 Eigen::Matrix3Xd Directions(const scene::Candidate& candidate, const Eigen::Vector3d& normal) {
@@ -187,6 +141,7 @@ World BuildWorld(const scene::Scene& scene) {
   body.materials = MaterialsOf(scene, body.mesh);
   body.fixed_nodes = FixedNodes(scene, body.mesh, world.surface);
   body.cables = Cables(scene, body.mesh, world.surface);
+  body.chambers = Chambers(scene, body.mesh, world.surface);
   body.gravity = scene.gravity;
   body.density = scene.density;
 
@@ -207,18 +162,6 @@ World BuildWorld(const scene::Scene& scene) {
   world.marker_spacing = SmallestSpacing(scene.markers.points, body.mesh);
   world.solver = std::make_unique<fem::StaticSolver>(std::move(body), file + ": body");
   return world;
-}
-
-std::vector<fem::CableCommand> CommandsAt(const scene::Scene& scene, double time_s) {
-  std::vector<fem::CableCommand> commands;
-  if (scene.actuators.empty()) return commands;
-  const Eigen::VectorXd inputs = scene.actuation.At(time_s);
-  for (size_t a = 0; a < scene.actuators.size(); ++a) {
-    const bool tension = scene.actuators[a].input == scene::ActuatorInput::kTension;
-    commands.push_back({tension ? fem::CableInput::kTension : fem::CableInput::kDisplacement,
-                        inputs(static_cast<Eigen::Index>(a))});
-  }
-  return commands;
 }
 
 }  // namespace softforce::pipeline

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/sections.h"
@@ -30,10 +32,23 @@ fem::MaterialModel ReadMaterialModel(const YamlValue& value) {
   value.Fail("got \"" + name + "\", expected " + Join(names), DidYouMean(name, names));
 }
 
+// From the softest gels to diamond: beyond these a unit went wrong.
+constexpr double kSoftest = 100, kStiffest = 1.3e12;  // Pa
+
+double ReadYoungsModulus(const YamlValue& value) {
+  const double modulus = value.Quantity(Dimension::kPressure);
+  if (modulus > 0 && (modulus < kSoftest || modulus > kStiffest)) {
+    value.Fail(
+        fmt::format("got {:.3g} Pa, expected {:.3g} to {:.3g} Pa", modulus, kSoftest, kStiffest),
+        "Silicone has 50 kPa to 2 MPa. Check the unit.");
+  }
+  return modulus;
+}
+
 fem::Material ReadMaterial(YamlMap& map) {
   fem::Material material;
   material.model = ReadMaterialModel(map.Required("model"));
-  material.youngs_modulus = map.Required("youngs_modulus").Quantity(Dimension::kPressure);
+  material.youngs_modulus = ReadYoungsModulus(map.Required("youngs_modulus"));
   material.poissons_ratio = map.Required("poissons_ratio").Number();
   material.Check(map.value().where());
   return material;

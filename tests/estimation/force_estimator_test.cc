@@ -59,15 +59,15 @@ TEST(ForceEstimator, UsesCablesByDisplacementAsKnownInputs) {
   testing::BarExperiment bar;
   bar.body.cables.push_back(
       {"upper", {testing::PointOf(bar.body, {0.1, 0.005, 0.01})}, {-0.02, 0.005, 0.03}});
-  const std::vector<fem::CableCommand> commands{{fem::CableInput::kDisplacement, 2e-3}};
+  const fem::Actuation actuation{{{fem::CableInput::kDisplacement, 2e-3}}, {}};
   const Eigen::Vector2d force(0.004, -0.008);
-  const fem::Equilibrium truth = bar.Load(force, commands);
+  const fem::Equilibrium truth = bar.Load(force, actuation);
   ASSERT_GT(truth.tension(0), 0);
   fem::StaticSolver solver(bar.body, "bar");
   ForceEstimator estimator(&solver, bar.sites, testing::ExactModel());
-  ASSERT_TRUE(estimator.Advance(commands).ok());
+  ASSERT_TRUE(estimator.Advance(actuation).ok());
 
-  const ForceEstimate estimate = estimator.Estimate(bar.Observe(truth, kNoise), commands);
+  const ForceEstimate estimate = estimator.Estimate(bar.Observe(truth, kNoise), actuation);
 
   ASSERT_TRUE(estimate.ok()) << estimate.BriefReport();
   EXPECT_LT((estimate.intensity - force).norm(), 1e-5);               // N

@@ -19,7 +19,7 @@ Body BarWithCable() {
 
 LoadCase Command(const Body& body, CableInput input, double value) {
   LoadCase load = testing::LoadAt(body, {}, Eigen::Vector3d::Zero());
-  load.commands[0] = {input, value};
+  load.actuation.cables[0] = {input, value};
   return load;
 }
 
@@ -80,7 +80,7 @@ TEST(Cable, SensitivityHoldsTheCommandedDisplacement) {
   StaticSolver solver(body, "body");
   const auto tip = testing::PointOf(body, {0.1, 0.0, 0.005});
   LoadCase load = testing::LoadAt(body, tip, {0, 0.004, -0.01});
-  load.commands[0] = {CableInput::kDisplacement, 3e-3};
+  load.actuation.cables[0] = {CableInput::kDisplacement, 3e-3};
   Equilibrium state = solver.AtRest();
   ASSERT_TRUE(solver.Solve(load, &state).ok());
   ASSERT_GT(state.tension(0), 0);

@@ -41,7 +41,7 @@ FrameResult GoodFrame() {
 
 TEST(ResultTables, WriteTheColumnsThatScriptsRead) {
   const std::filesystem::path folder = FreshFolder("result_tables_columns");
-  ResultTables tables(folder, true);
+  ResultTables tables(folder, {true, false});
   tables.Add(GoodFrame());
   tables.Commit();
 
@@ -60,12 +60,25 @@ TEST(ResultTables, WriteTheColumnsThatScriptsRead) {
             "frame,time_s,actuator,tension_N,displacement_mm\n3,0.100000,left,0.900000,8.00000\n");
 }
 
+TEST(ResultTables, GiveCablesAndChambersTheirOwnColumns) {
+  const std::filesystem::path folder = FreshFolder("result_tables_chambers");
+  FrameResult frame = GoodFrame();
+  frame.chambers.push_back({"belly", 12.5e3});
+  ResultTables tables(folder, {true, true});
+  tables.Add(frame);
+  tables.Commit();
+
+  EXPECT_EQ(ReadText(folder / "actuation.csv"),
+            "frame,time_s,actuator,tension_N,displacement_mm,pressure_kPa\n"
+            "3,0.100000,left,0.900000,8.00000,\n3,0.100000,belly,,,12.50000\n");
+}
+
 TEST(ResultTables, SayWhyAFrameIsNotUsable) {
   const std::filesystem::path folder = FreshFolder("result_tables_lost");
   FrameResult lost = GoodFrame();
   lost.forces.clear();
   lost.status = estimation::ForceEstimate::Status::kTooFewObservations;
-  ResultTables tables(folder, false);
+  ResultTables tables(folder, {});
   tables.Add(lost);
   tables.Commit();
 
@@ -77,7 +90,7 @@ TEST(ResultTables, SayWhyAFrameIsNotUsable) {
 TEST(ResultTables, LeaveNothingUnlessCommitted) {
   const std::filesystem::path folder = FreshFolder("result_tables_abandoned");
   {
-    ResultTables tables(folder, true);
+    ResultTables tables(folder, {true, false});
     tables.Add(GoodFrame());
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder));

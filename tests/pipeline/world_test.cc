@@ -94,13 +94,54 @@ TEST(BuildWorld, RefusesAMaterialForARegionThatTheMeshDoesNotHave) {
       ::testing::AllOf(::testing::HasSubstr("\"skin\""), ::testing::HasSubstr("\"sheet\"")));
 }
 
-TEST(BuildWorld, RefusesAPressureChamber) {
+TEST(BuildWorld, RefusesAChamberThatIsNotClosed) {
+  scene::Scene scene = Demo();
+  scene.mesh.file = std::string(SOFTFORCE_SOURCE_DIR) + "/meshes/sheet.msh";  // has a group "top"
+  scene::Actuator chamber;
+  chamber.name = "belly";
+  chamber.type = scene::ActuatorType::kPressure;
+  chamber.group = "top";
+  scene.actuators.push_back(chamber);
+  EXPECT_THAT(Refusal([&] { BuildWorld(scene); }),
+              ::testing::AllOf(::testing::HasSubstr("chamber \"belly\""),
+                               ::testing::HasSubstr("not closed")));
+}
+
+TEST(BuildWorld, RefusesAChamberOfAnUnknownGroup) {
   scene::Scene scene = Demo();
   scene::Actuator chamber;
-  chamber.name = "chamber";
+  chamber.name = "belly";
   chamber.type = scene::ActuatorType::kPressure;
+  chamber.group = "cavity";
   scene.actuators.push_back(chamber);
-  EXPECT_THAT(Refusal([&] { BuildWorld(scene); }), ::testing::HasSubstr("pressure"));
+  EXPECT_THAT(Refusal([&] { BuildWorld(scene); }),
+              ::testing::AllOf(::testing::HasSubstr("actuators: \"belly\": group"),
+                               ::testing::HasSubstr("no surface group \"cavity\"")));
+}
+
+scene::Actuator CableThrough(const Eigen::Vector3d& via) {
+  scene::Actuator cable;
+  cable.name = "left";
+  cable.points = {{0.1, 0.1, 0.01}, via};
+  cable.guide = {0.1, 0.3, 0.05};
+  return cable;
+}
+
+TEST(BuildWorld, RefusesACableOutsideTheBody) {
+  scene::Scene scene = Demo();
+  scene.actuators.push_back(CableThrough({0.1, 0.15, 0.025}));
+  EXPECT_THAT(Refusal([&] { BuildWorld(scene); }),
+              ::testing::AllOf(::testing::HasSubstr("actuators: \"left\": points"),
+                               ::testing::HasSubstr("15 mm off the body's surface")));
+}
+
+TEST(BuildWorld, LeadsACableThroughTheInsideOfTheBody) {
+  scene::Scene scene = Demo();
+  const Eigen::Vector3d inside(0.1, 0.15, 0.005);
+  scene.actuators.push_back(CableThrough(inside));
+  const World world = BuildWorld(scene);
+  const fem::Cable& cable = world.solver->body().cables.at(0);
+  EXPECT_LT((cable.points[1].Apply(world.mesh().nodes) - inside).norm(), 1e-12);  // m
 }
 
 }  // namespace

@@ -131,6 +131,12 @@ TEST(SceneRefusal, ListsTheMaterialModels) {
 }
 
 TEST(SceneRefusal, NamesAMaterialOutOfRange) {
+  EXPECT_THAT(SceneRefusal("youngs_modulus: 290 kPa", "youngs_modulus: 29 Pa"),
+              HasSubstr("got 29 Pa, expected 100 to 1.3e+12 Pa"));
+  EXPECT_THAT(SceneRefusal("youngs_modulus: 290 kPa", "youngs_modulus: 290000 GPa"),
+              HasSubstr("got 2.9e+14 Pa"));
+  EXPECT_THAT(SceneRefusal("youngs_modulus: 290 kPa", "youngs_modulus: -290 kPa"),
+              HasSubstr("must be greater than 0"));
   EXPECT_THAT(SceneRefusal("poissons_ratio: 0.45", "poissons_ratio: 0.5"),
               StartsWith("scene.yaml:6: body: material: soft: "));
 }

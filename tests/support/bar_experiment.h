@@ -27,13 +27,13 @@ struct BarExperiment {
 
   // The bar's answer to an intensity per component of the sites.
   fem::Equilibrium Load(const Eigen::VectorXd& intensity,
-                        std::vector<fem::CableCommand> commands = {}) const {
+                        const fem::Actuation& actuation = {}) const {
     fem::StaticSolverOptions exact;
-    exact.step_tolerance = 1e-10;
+    exact.tolerance = 1e-10;
     fem::StaticSolver solver(body, "bar", exact);
     fem::Equilibrium state = solver.AtRest();
     fem::LoadCase load = state.load;
-    load.commands = std::move(commands);
+    load.actuation = actuation;
     int component = 0;
     for (const estimation::ForceSite& site : sites) {
       const Eigen::Vector3d force =

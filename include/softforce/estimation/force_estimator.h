@@ -92,7 +92,7 @@ struct WhitenedObservation;
 //
 //   min over λ, ξ of Σ_i ρ(|R_i^(-1/2) (x_i(λ) + offset_i(ξ) − z_i)|²) + ξᵀ P⁻¹ ξ,
 //
-// x(λ) the equilibrium under λ and the cables' commands, ξ a rigid offset with prior covariance P,
+// x(λ) the equilibrium under λ and the actuation, ξ a rigid offset with prior covariance P,
 // by Ceres on the *converged* equilibrium (the paper takes one linear step, eqs. 9–13), with
 // Jacobian R^(-1/2) W_ef from the tangent there and a Huber loss ρ. R_i is the measurement's
 // covariance plus the local model error; P is where the rig's place is uncertain plus the common
@@ -108,8 +108,8 @@ class ForceEstimator {
   int num_components() const { return static_cast<int>(H_f_.cols()); }
   const std::vector<ForceSite>& sites() const { return sites_; }
 
-  // Moves the body to new commands under the last forces, without observations.
-  fem::SolveSummary Advance(const std::vector<fem::CableCommand>& commands);
+  // Moves the body to a new actuation under the last forces, without observations.
+  fem::SolveSummary Advance(const fem::Actuation& actuation);
 
   // How uncertain the place of the rig is: covariance of a twist xi (translation in m, rotation in
   // rad) of the robot frame, T_rig_robot = estimate · ExpSe3(xi). Zero until it is set.
@@ -117,10 +117,10 @@ class ForceEstimator {
     registration_covariance_ = covariance;
   }
 
-  // Estimates the forces under the given commands. If the status is not kOk the state stays as it
+  // Estimates the forces under the given actuation. If the status is not kOk the state stays as it
   // was before.
   ForceEstimate Estimate(const std::vector<Observation>& observations,
-                         const std::vector<fem::CableCommand>& commands);
+                         const fem::Actuation& actuation);
 
   const fem::Equilibrium& state() const { return state_; }
   const Eigen::VectorXd& intensity() const { return intensity_; }  // N, last usable
@@ -135,12 +135,11 @@ class ForceEstimator {
   Eigen::Matrix3d ForceCovariance(const Eigen::MatrixXd& covariance, int site) const;
 
  private:
-  fem::LoadCase LoadOf(const Eigen::VectorXd& intensity,
-                       const std::vector<fem::CableCommand>& commands) const;
+  fem::LoadCase LoadOf(const Eigen::VectorXd& intensity, const fem::Actuation& actuation) const;
   int FirstComponent(int site) const;
   bool RefreshCompliance();  // false if the tangent is not positive definite
   std::string SitesIn(const Eigen::VectorXd& combination) const;  // names, for a person
-  BodyResponse Response(const std::vector<fem::CableCommand>& commands, ForceEstimate* estimate);
+  BodyResponse Response(const fem::Actuation& actuation, ForceEstimate* estimate);
   double LargestDisplacement(const std::vector<Observation>& observations) const;  // m, now
   std::vector<WhitenedObservation> Whiten(const std::vector<Observation>& observations,
                                           double displacement, ForceEstimate* estimate) const;
@@ -148,7 +147,7 @@ class ForceEstimator {
                               double model_sd) const;
   // Fits, rejects the worst impossible observation, and fits again, until none is left.
   void FitAndReject(std::vector<WhitenedObservation> used, double common_sd,
-                    const std::vector<fem::CableCommand>& commands, ForceEstimate* estimate);
+                    const fem::Actuation& actuation, ForceEstimate* estimate);
   // Fills in χ² and the whitened Jacobian; returns the worst observation that is impossible, or −1.
   int Assess(const std::vector<WhitenedObservation>& used, const OffsetPrior& prior,
              const BodyResponse& body, const Eigen::VectorXd& parameters, Eigen::MatrixXd* J,

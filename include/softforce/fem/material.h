@@ -23,6 +23,9 @@ enum class MaterialModel {
 const char* Name(MaterialModel model);
 std::optional<MaterialModel> MaterialModelByName(const std::string& name);
 
+// Whether the energy grows without bound as J → 0, so that no cell can turn inside out.
+bool HasBarrier(MaterialModel model);
+
 struct Material {
   MaterialModel model = MaterialModel::kNeoHookean;
   double youngs_modulus = NAN;  // Pa, at small strain; > 0

@@ -16,10 +16,19 @@ struct CableCommand {
   double value = 0;  // N (≥ 0), or m by which the cable is shortened against the body at rest
 };
 
+// What the body is told to do.
+struct Actuation {
+  std::vector<CableCommand> cables;  // one per cable of the body
+  std::vector<double> pressures;     // Pa above the surroundings, one per chamber of the body
+};
+
+// Cables without tension, chambers without pressure.
+Actuation NoActuation(const Body& body);
+
 // Everything that acts on the body besides gravity.
 struct LoadCase {
-  Eigen::Matrix3Xd forces;             // 3×N, N; dead loads on the nodes
-  std::vector<CableCommand> commands;  // one per cable of the body
+  Eigen::Matrix3Xd forces;  // 3×N, N; dead loads on the nodes
+  Actuation actuation;
 };
 
 // A shape of the body, and what its cables do there.
@@ -32,28 +41,37 @@ struct Equilibrium {
 
 struct StaticSolverOptions {
   // Converged when no node would move further than this share of the body's diagonal.
-  double step_tolerance = 1e-7;
+  double tolerance = 1e-7;
   int max_iterations = 60;
-  // A factorised tangent is kept while each iteration shrinks the step at least by this factor.
-  double stale_contraction = 0.2;
+  // What a factorisation of the tangent costs, in iterations with the one at hand. The old one is
+  // kept until it has cost as many iterations more than a new one would have.
+  double factorisation_worth = 10;
   int max_load_halvings = 8;
 
   void Check() const;  // throws InputError naming the option
 };
 
 struct SolveSummary {
-  enum class Status { kNotRun, kConverged, kNotConverged };
+  enum class Status {
+    kNotRun,
+    kConverged,
+    kNotConverged,  // too many iterations, or none that lowers the energy
+    kUnstable,      // the body buckles, snaps or bursts beyond the load reached
+    kInverted       // a cell turns inside out
+  };
 
   Status status = Status::kNotRun;
-  int iterations = 0;      // Newton steps
-  int factorisations = 0;  // of the tangent
-  int load_steps = 0;      // 1 unless the load had to be cut
-  double reached_share =
-      0;                   // of the way from the old load to the new one at which it last converged
-  double last_step = NAN;  // m, largest movement of a node in the last iteration
+  int iterations = 0;         // Newton steps
+  int factorisations = 0;     // of the tangent
+  int load_steps = 0;         // 1 unless the load had to be cut
+  double reached_share = 0;   // of the way from the old load to the new one that was gone
+  double last_step = NAN;     // m, largest movement of a node in the last iteration
+  int inverted_element = -1;  // set if kInverted, with
+  Eigen::Vector3d inverted_at = Eigen::Vector3d::Constant(NAN);  // m, its centre at rest
 
   bool ok() const { return status == Status::kConverged; }
   std::string BriefReport() const;
+  std::string Advice() const;  // what to try if it is not ok; empty if it is
 };
 
 // How the body answers to small changes of the dead loads, at an equilibrium and with the commands
@@ -67,14 +85,17 @@ struct Sensitivity {
 
 // Quasi-static equilibrium at large displacement:
 //
-//   f_int(x) + Σ_c t_c ∂ℓ_c/∂x = f + gravity      on the nodes that are free,
+//   f_int(x) + Σ_c t_c ∂ℓ_c/∂x = f + gravity + Σ_k p_k ∂V_k/∂x      on the nodes that are free,
 //
-// with f_int from the cells' elastic law, t_c ≥ 0 the tension and ℓ_c the length of cable c; a
-// cable commanded by displacement d adds ℓ_c = ℓ_c(rest) − d or, where that would take a push, t_c
-// = 0. Newton's method with a line search on the potential energy (augmented by the cables'
-// constraints); the tangent is factorised by supernodal CHOLMOD on one thread and kept over
-// iterations and calls while it still contracts. If Newton fails the load is approached in smaller
-// steps.
+// with f_int from the cells' elastic law, t_c ≥ 0 the tension and ℓ_c the length of cable c, p_k
+// the pressure and V_k the volume of chamber k. A cable commanded by displacement d adds ℓ_c =
+// ℓ_c(rest) − d or, where that would take a push, t_c = 0.
+//
+// Newton's method with a line search on the potential energy (augmented by the cables'
+// constraints). The tangent is factorised by supernodal CHOLMOD on one thread, and kept over
+// iterations and calls, corrected by limited-memory BFGS, for as long as that is cheaper than a new
+// one. If Newton fails the load is approached in smaller steps; a step that would leave a cell
+// inside out is not taken.
 //
 //   StaticSolver solver(body);
 //   Equilibrium state = solver.AtRest();

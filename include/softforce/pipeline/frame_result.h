@@ -36,6 +36,11 @@ struct CableResult {
   double displacement = NAN;  // m, shortening
 };
 
+struct ChamberResult {
+  std::string name;
+  double pressure = NAN;  // Pa
+};
+
 // All that is known of one frame. If the status is not kOk the forces are empty and the model is
 // where it was expected.
 struct FrameResult {
@@ -46,6 +51,7 @@ struct FrameResult {
   std::vector<ForceResult> forces;
   std::vector<MarkerResult> markers;
   std::vector<CableResult> cables;
+  std::vector<ChamberResult> chambers;
   double chi2 = NAN;
   int degrees_of_freedom = 0;
 };

@@ -24,7 +24,7 @@ struct TrackerOptions {
 };
 
 // From detections to forces, frame after frame: predicts the features from the body's last state
-// and the new commands, allocates detections to them, locates them, and estimates the forces.
+// and the new actuation, allocates detections to them, locates them, and estimates the forces.
 class Tracker {
  public:
   // `rig_covariance`: of a twist xi in the rig frame, T_rig_robot = ExpSe3(xi) · estimate. Scene,

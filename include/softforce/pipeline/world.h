@@ -40,10 +40,11 @@ BodyPoint PlaceOnSurface(const mesh::Surface& surface, const Eigen::Matrix3Xd& X
                          const Eigen::Vector3d& place, const std::string& where);
 
 // Reads the scene's mesh and puts the body together. Throws InputError for a mesh that cannot be
-// used, a region without material, nothing fixed, or a marker, candidate or cable off the surface.
+// used, a region without material, nothing fixed, a marker, candidate or
+// cable off the surface, or a chamber that is not closed.
 World BuildWorld(const scene::Scene& scene);
 
-// The commands of the scene's cables at a time.
-std::vector<fem::CableCommand> CommandsAt(const scene::Scene& scene, double time_s);
+// What the scene's actuators are told at a time.
+fem::Actuation ActuationAt(const scene::Scene& scene, double time_s);
 
 }  // namespace softforce::pipeline

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "softforce/fem/body.h"
+#include "softforce/mesh/surface.h"
+#include "softforce/scene/scene.h"
+
+namespace softforce::pipeline {
+
+// The cables and chambers of a scene, each in the scene's order. Throw InputError for a cable off
+// the body, or a chamber without walls.
+std::vector<fem::Cable> Cables(const scene::Scene& scene, const mesh::TetMesh& mesh,
+                               const mesh::Surface& surface);
+std::vector<fem::Chamber> Chambers(const scene::Scene& scene, const mesh::TetMesh& mesh,
+                                   const mesh::Surface& surface);
+
+}  // namespace softforce::pipeline
