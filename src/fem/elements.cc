@@ -1,7 +1,9 @@
 #include "fem/elements.h"
 
 #include <Eigen/LU>
+#include <array>
 #include <limits>
+#include <map>
 
 namespace softforce::fem {
 namespace {
@@ -47,71 +49,139 @@ std::vector<Eigen::Vector4d> IntegrationPoints(int nodes) {
   return points;
 }
 
-template <int kNodes>
-Eigen::Matrix3d DeformationGradient(const Eigen::Matrix<double, 3, kNodes>& u,
-                                    const Eigen::Map<const Eigen::Matrix<double, 3, kNodes>>& g) {
-  return Eigen::Matrix3d::Identity() + u * g.transpose();
-}
-
 }  // namespace
 
 Elements::Elements(const Body& body) : nodes_(body.mesh.elements) {
+  material_of_.reserve(num_elements());
+  for (int e = 0; e < num_elements(); ++e) {
+    material_of_.push_back(body.materials[body.mesh.region[e]]);
+  }
+  MakeBatches();
+  for (const Batch& batch : batches_) FillBatch(batch, body.mesh.nodes);
+}
+
+void Elements::MakeBatches() {
+  std::map<MaterialModel, std::vector<int>> elements_of;
+  for (int e = 0; e < num_elements(); ++e) elements_of[material_of_[e].model].push_back(e);
+  place_of_.resize(num_elements());
+  const size_t gradients_per_batch = size_t{3} * kLanes * nodes_per_element() * num_points();
+  const size_t weights_per_batch = size_t{kLanes} * num_points();
+  for (const auto& [model, elements] : elements_of) {
+    for (size_t first = 0; first < elements.size(); first += kLanes) {
+      Batch batch{KernelFor(model, nodes_per_element()),
+                  {},
+                  {},
+                  {},
+                  {},
+                  batches_.size() * gradients_per_batch,
+                  batches_.size() * weights_per_batch};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const bool is_there = first + lane < elements.size();
+        // Missing elements compute what the first one does, with weight 0.
+        const int e = elements[is_there ? first + lane : first];
+        batch.elements[lane] = is_there ? e : -1;
+        batch.mu[lane] = material_of_[e].mu();
+        batch.lambda[lane] = material_of_[e].lambda();
+        batch.kappa[lane] = material_of_[e].kappa();
+        if (is_there) place_of_[e] = {batches_.size(), lane};
+      }
+      batches_.push_back(batch);
+    }
+  }
+  gradients_.resize(batches_.size() * gradients_per_batch);
+  weights_.resize(batches_.size() * weights_per_batch);
+}
+
+void Elements::FillBatch(const Batch& batch, const Eigen::Matrix3Xd& X) {
   const int n = nodes_per_element();
   const std::vector<Eigen::Vector4d> points = IntegrationPoints(n);
-  std::vector<Eigen::Matrix3Xd> derivatives;
-  derivatives.reserve(points.size());
-  for (const Eigen::Vector4d& b : points) derivatives.push_back(ShapeDerivatives(n, b));
-
-  gradients_.reserve(size_t{3} * n * points.size() * num_elements());
-  weights_.reserve(points.size() * num_elements());
-  for (int e = 0; e < num_elements(); ++e) {
-    Eigen::Matrix3Xd X(3, n);
-    for (int i = 0; i < n; ++i) X.col(i) = body.mesh.nodes.col(nodes_(i, e));
-    for (const Eigen::Matrix3Xd& d : derivatives) {
-      const Eigen::Matrix3d jacobian = X * d.transpose();  // dX / d(b1, b2, b3)
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const bool is_there = batch.elements[lane] >= 0;
+    const Eigen::Matrix3Xd X_e = NodalValues(batch.elements[is_there ? lane : 0], X);
+    for (int p = 0; p < num_points(); ++p) {
+      const Eigen::Matrix3Xd d = ShapeDerivatives(n, points[p]);
+      const Eigen::Matrix3d jacobian = X_e * d.transpose();  // dX / d(b1, b2, b3)
       const Eigen::Matrix3Xd g = jacobian.inverse().transpose() * d;
-      gradients_.insert(gradients_.end(), g.data(), g.data() + g.size());
-      weights_.push_back(jacobian.determinant() / 6 / static_cast<double>(points.size()));
+      for (int k = 0; k < 3 * n; ++k) {
+        gradients_[batch.first_gradient + (size_t{3} * n * p + k) * kLanes + lane] = g.data()[k];
+      }
+      weights_[batch.first_weight + size_t{kLanes} * p + lane] =
+          is_there ? jacobian.determinant() / 6 / num_points() : 0;
     }
-    material_of_.push_back(body.materials[body.mesh.region[e]]);
   }
 }
 
-template <int kNodes>
-double Elements::EnergyAndForcesOf(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const {
+Eigen::Matrix3Xd Elements::Gradients(int element, int point) const {
+  const int n = nodes_per_element();
+  const Place& at = place_of_[element];
+  const double* first = gradients_.data() + batches_[at.batch].first_gradient +
+                        size_t{3} * n * point * kLanes + at.lane;
+  return Eigen::Map<const Eigen::Matrix3Xd, 0, Eigen::Stride<3 * kLanes, kLanes>>(first, 3, n);
+}
+
+Eigen::Matrix3Xd Elements::NodalValues(int element, const Eigen::Matrix3Xd& field) const {
+  return field(Eigen::all, nodes_.col(element));
+}
+
+double Elements::EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const {
+  const int n = nodes_per_element();
+  alignas(64) std::array<double, 30 * kLanes> u_batch, f_batch;
   double energy = 0;
-  Eigen::Matrix<double, 3, kNodes> u_e, f_e;
-  for (int e = 0; e < num_elements(); ++e) {
-    for (int i = 0; i < kNodes; ++i) u_e.col(i) = u.col(nodes_(i, e));
-    f_e.setZero();
-    for (int p = 0; p < num_points(); ++p) {
-      const Eigen::Map<const Eigen::Matrix<double, 3, kNodes>> g(gradients(e, p));
-      const MaterialResponse response =
-          Evaluate(material_of_[e], DeformationGradient<kNodes>(u_e, g), false);
-      if (!response.valid) return std::numeric_limits<double>::infinity();
-      const double weight = weights_[e * num_points() + p];
-      energy += weight * response.energy;
-      f_e.noalias() += (weight * response.P) * g;
+  for (const Batch& batch : batches_) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int e = batch.elements[lane] >= 0 ? batch.elements[lane] : batch.elements[0];
+      for (int i = 0; i < n; ++i) {
+        const double* from = u.data() + 3 * nodes_(i, e);
+        for (int k = 0; k < 3; ++k) u_batch[(3 * i + k) * kLanes + lane] = from[k];
+      }
     }
-    for (int i = 0; i < kNodes; ++i) forces->col(nodes_(i, e)) += f_e.col(i);
+    const BatchEnergy result = batch.kernel(
+        {gradients_.data() + batch.first_gradient, weights_.data() + batch.first_weight,
+         batch.mu.data(), batch.lambda.data(), batch.kappa.data(), u_batch.data(), f_batch.data()});
+    if (result.status == BatchEnergy::Status::kInvalid) {
+      return std::numeric_limits<double>::infinity();
+    }
+    if (result.status == BatchEnergy::Status::kHard) {
+      energy += EnergyAndForcesOneByOne(batch, u, forces);
+      continue;
+    }
+    energy += result.energy;
+    for (int lane = 0; lane < kLanes && batch.elements[lane] >= 0; ++lane) {
+      for (int i = 0; i < n; ++i) {
+        double* to = forces->data() + 3 * nodes_(i, batch.elements[lane]);
+        for (int k = 0; k < 3; ++k) to[k] += f_batch[(3 * i + k) * kLanes + lane];
+      }
+    }
   }
   return energy;
 }
 
-double Elements::EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const {
-  return nodes_per_element() == 10 ? EnergyAndForcesOf<10>(u, forces)
-                                   : EnergyAndForcesOf<4>(u, forces);
+double Elements::EnergyAndForcesOneByOne(const Batch& batch, const Eigen::Matrix3Xd& u,
+                                         Eigen::Matrix3Xd* forces) const {
+  double energy = 0;
+  for (const int e : batch.elements) {
+    if (e < 0) continue;
+    const Eigen::Matrix3Xd u_e = NodalValues(e, u);
+    for (int p = 0; p < num_points(); ++p) {
+      const Eigen::Matrix3Xd g = Gradients(e, p);
+      const MaterialResponse response =
+          Evaluate(material_of_[e], Eigen::Matrix3d::Identity() + u_e * g.transpose(), false);
+      if (!response.valid) return std::numeric_limits<double>::infinity();
+      energy += Weight(e, p) * response.energy;
+      const Eigen::Matrix3Xd f_e = (Weight(e, p) * response.P) * g;
+      for (int i = 0; i < f_e.cols(); ++i) forces->col(nodes_(i, e)) += f_e.col(i);
+    }
+  }
+  return energy;
 }
 
 int Elements::InvertedElement(const Eigen::Matrix3Xd& u) const {
-  const int n = nodes_per_element();
-  Eigen::Matrix3Xd u_e(3, n);
   for (int e = 0; e < num_elements(); ++e) {
     if (HasBarrier(material_of_[e].model)) continue;
-    for (int i = 0; i < n; ++i) u_e.col(i) = u.col(nodes_(i, e));
+    const Eigen::Matrix3Xd u_e = NodalValues(e, u);
     for (int p = 0; p < num_points(); ++p) {
-      const Eigen::Map<const Eigen::Matrix3Xd> g(gradients(e, p), 3, n);
-      if (!((Eigen::Matrix3d::Identity() + u_e * g.transpose()).determinant() > 0)) return e;
+      const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + u_e * Gradients(e, p).transpose();
+      if (!(F.determinant() > 0)) return e;
     }
   }
   return -1;
@@ -126,14 +196,13 @@ Eigen::Vector3d Elements::Centre(int element, const Eigen::Matrix3Xd& x) const {
 template <int kNodes>
 void Elements::Stiffness(int element, const Eigen::Matrix3Xd& u,
                          Eigen::Matrix<double, 3 * kNodes, 3 * kNodes>* K) const {
-  Eigen::Matrix<double, 3, kNodes> u_e;
-  for (int i = 0; i < kNodes; ++i) u_e.col(i) = u.col(nodes_(i, element));
+  const Eigen::Matrix<double, 3, kNodes> u_e = NodalValues(element, u);
   K->setZero();
   for (int p = 0; p < num_points(); ++p) {
-    const Eigen::Map<const Eigen::Matrix<double, 3, kNodes>> g(gradients(element, p));
+    const Eigen::Matrix<double, 3, kNodes> g = Gradients(element, p);
     const MaterialResponse response =
-        Evaluate(material_of_[element], DeformationGradient<kNodes>(u_e, g), true);
-    const Matrix9d A = weights_[element * num_points() + p] * response.dPdF;
+        Evaluate(material_of_[element], Eigen::Matrix3d::Identity() + u_e * g.transpose(), true);
+    const Matrix9d A = Weight(element, p) * response.dPdF;
     for (int b = 0; b < kNodes; ++b) {
       const Eigen::Matrix<double, 9, 3> A_b = A.middleCols<3>(0) * g(0, b) +
                                               A.middleCols<3>(3) * g(1, b) +
@@ -157,7 +226,7 @@ double Elements::ShearModulusTimesVolume() const {
   double sum = 0;
   for (int e = 0; e < num_elements(); ++e) {
     for (int p = 0; p < num_points(); ++p) {
-      sum += material_of_[e].mu() * weights_[e * num_points() + p];
+      sum += material_of_[e].mu() * Weight(e, p);
     }
   }
   return sum;
@@ -170,7 +239,7 @@ Eigen::VectorXd Elements::NodalVolumes(int num_nodes) const {
     for (int p = 0; p < num_points(); ++p) {
       const Eigen::VectorXd share = ShapeValues(nodes_per_element(), points[p]);
       for (int i = 0; i < nodes_per_element(); ++i) {
-        volumes(nodes_(i, e)) += weights_[e * num_points() + p] * share(i);
+        volumes(nodes_(i, e)) += Weight(e, p) * share(i);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "fem/element_kernel.h"
 #include "softforce/fem/body.h"
 
 namespace softforce::fem {
@@ -42,18 +43,38 @@ class Elements {
   Eigen::VectorXd NodalVolumes(int num_nodes) const;
 
  private:
-  template <int kNodes>
-  double EnergyAndForcesOf(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const;
+  // kLanes elements of one law, the last ones perhaps missing (−1).
+  struct Batch {
+    ElementKernel kernel;
+    std::array<int, kLanes> elements;
+    std::array<double, kLanes> mu, lambda, kappa;  // Pa
+    size_t first_gradient, first_weight;           // in gradients_ and weights_
+  };
+  struct Place {
+    size_t batch;
+    int lane;
+  };
+
+  void MakeBatches();
+  void FillBatch(const Batch& batch, const Eigen::Matrix3Xd& X);
+  double EnergyAndForcesOneByOne(const Batch& batch, const Eigen::Matrix3Xd& u,
+                                 Eigen::Matrix3Xd* forces) const;
 
   int num_points() const { return nodes_.rows() == 10 ? 4 : 1; }
-  const double* gradients(int element, int point) const {
-    return gradients_.data() + (element * num_points() + point) * 3 * nodes_.rows();
+  // ∂shape/∂X, a column per node, 1/m.
+  Eigen::Matrix3Xd Gradients(int element, int point) const;
+  double Weight(int element, int point) const {  // m³
+    const Place& at = place_of_[element];
+    return weights_[batches_[at.batch].first_weight + point * kLanes + at.lane];
   }
+  Eigen::Matrix3Xd NodalValues(int element, const Eigen::Matrix3Xd& field) const;
 
   Eigen::MatrixXi nodes_;
-  std::vector<double> gradients_;      // [element][point][local][xyz], 1/m
-  std::vector<double> weights_;        // [element][point], m³
   std::vector<Material> material_of_;  // per element
+  std::vector<Batch> batches_;
+  std::vector<Place> place_of_;    // per element
+  std::vector<double> gradients_;  // [batch][point][local][xyz][lane], 1/m
+  std::vector<double> weights_;    // [batch][point][lane], m³
 };
 
 }  // namespace softforce::fem

@@ -1,0 +1,6 @@
+// Compiled for processors with AVX2 and FMA: see CMakeLists.txt.
+#include "fem/element_kernel.h"
+
+namespace softforce::fem::avx2 {
+#include "fem/element_kernel_body.h"
+}  // namespace softforce::fem::avx2

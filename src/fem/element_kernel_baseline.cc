@@ -1,0 +1,5 @@
+#include "fem/element_kernel.h"
+
+namespace softforce::fem::baseline {
+#include "fem/element_kernel_body.h"
+}  // namespace softforce::fem::baseline
