@@ -60,4 +60,22 @@ inline mesh::TetMesh MakeBox(int nx, int ny, int nz, const Eigen::Vector3d& size
   return box;
 }
 
+// The same cells with every node X moved to place(X). Of a box whose order has been raised this
+// makes cells with curved edges.
+template <typename Map>
+mesh::TetMesh MapNodes(mesh::TetMesh mesh, const Map& place) {
+  for (int node = 0; node < mesh.num_nodes(); ++node) {
+    const Eigen::Vector3d X = mesh.nodes.col(node);
+    mesh.nodes.col(node) = place(X);
+  }
+  return mesh;
+}
+
+// A unit box of n1 × n2 × n3 bricks with 4- or 10-node cells, mapped by `place`.
+template <typename Map>
+mesh::TetMesh MapBox(const std::array<int, 3>& n, int order, const Map& place) {
+  const mesh::TetMesh box = MakeBox(n[0], n[1], n[2], Eigen::Vector3d::Ones());
+  return MapNodes(order == 2 ? mesh::RaiseOrder(box) : box, place);
+}
+
 }  // namespace softforce::testing
