@@ -12,6 +12,7 @@ struct Command {
   std::function<int()> run;
 };
 
+Command AddMesh(CLI::App* program);
 Command AddRun(CLI::App* program);
 
 }  // namespace softforce::apps

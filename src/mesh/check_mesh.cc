@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "mesh/jacobian.h"
+#include "mesh/millimetres.h"
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/tet_mesh.h"
 
@@ -19,48 +20,10 @@ void RefuseIfAny(const std::string& where, const std::vector<int>& offenders, De
   throw base::InputError(where, problem, advice);
 }
 
-std::string InMillimetres(const Eigen::Vector3d& p) {
-  return fmt::format("({:.3f}, {:.3f}, {:.3f}) mm", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
-}
-
 Eigen::Vector3d CornerMean(const TetMesh& mesh, int e) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < 4; ++i) sum += mesh.nodes.col(mesh.elements(i, e));
   return sum / 4;
-}
-
-// Six times the volume per unit of the reference element, at its local node `at`: for 10-node
-// elements with curved edges it differs from place to place.
-double Jacobian(const TetMesh& mesh, int e, int at) {
-  Eigen::Matrix3d J;
-  const auto node = [&](int i) -> Eigen::Vector3d { return mesh.nodes.col(mesh.elements(i, e)); };
-  if (mesh.order() == 1) {
-    for (int i = 0; i < 3; ++i) J.col(i) = node(i + 1) - node(0);
-    return J.determinant();
-  }
-  Eigen::Vector4d L = Eigen::Vector4d::Zero();
-  if (at < 4) {
-    L(at) = 1;
-  } else {
-    for (const int corner : kEdges[at - 4]) L(corner) = 0.5;
-  }
-  Eigen::Matrix<double, 3, 4> dx;  // along each barycentric coordinate
-  for (int i = 0; i < 4; ++i) dx.col(i) = (4 * L(i) - 1) * node(i);
-  for (int i = 0; i < 6; ++i) {
-    const auto [a, b] = kEdges[i];
-    dx.col(a) += 4 * L(b) * node(4 + i);
-    dx.col(b) += 4 * L(a) * node(4 + i);
-  }
-  for (int i = 0; i < 3; ++i) J.col(i) = dx.col(i + 1) - dx.col(0);
-  return J.determinant();
-}
-
-double LeastJacobian(const TetMesh& mesh, int e) {
-  double least = Jacobian(mesh, e, 0);
-  for (int at = 1; mesh.order() == 2 && at < 10; ++at) {
-    least = std::min(least, Jacobian(mesh, e, at));
-  }
-  return least;
 }
 
 bool NamesANodeTwice(const TetMesh& mesh, int e) {
@@ -112,12 +75,13 @@ void CheckMesh(const TetMesh& mesh, const std::string& where) {
       "Mesh the body again; the file may have been merged carelessly.");
 
   RefuseIfAny(
-      where, Where(mesh.num_elements(), [&](int e) { return !(LeastJacobian(mesh, e) > 0); }),
+      where,
+      Where(mesh.num_elements(), [&](int e) { return !(JacobianRangeOf(mesh, e).least > 0); }),
       [&](int e) {
         return fmt::format(
             "element {} at {} is inverted or flat: its volume is {:.3g} mm^3, must "
             "be positive everywhere in it",
-            e, InMillimetres(CornerMean(mesh, e)), 1e9 * LeastJacobian(mesh, e) / 6);
+            e, InMillimetres(CornerMean(mesh, e)), 1e9 * JacobianRangeOf(mesh, e).least / 6);
       },
       "Mesh the body again, and optimise the mesh (in Gmsh: Mesh.Optimize = 1, and for curved "
       "10-node elements Mesh.HighOrderOptimize = 1).");

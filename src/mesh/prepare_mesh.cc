@@ -1,0 +1,58 @@
+#include "softforce/mesh/prepare_mesh.h"
+
+#include <fmt/format.h>
+
+#include "softforce/base/input_error.h"
+#include "softforce/mesh/read_mesh.h"
+#include "softforce/mesh/surface_groups.h"
+#include "softforce/mesh/write_mesh.h"
+
+namespace softforce::mesh {
+namespace {
+
+using base::InputError;
+
+GeneratedMesh ReadOrGenerate(const std::filesystem::path& in, const PrepareOptions& options) {
+  if (IsGeometryFile(in)) return GenerateMesh(in, options.metres_per_unit, options.generate);
+  if (!std::isnan(options.generate.size)) {
+    throw InputError("--size", fmt::format("{} is not a geometry that can be meshed", in.string()),
+                     "Give the .stl, .step, .brep or .geo file that the mesh was made from.");
+  }
+  return {ReadMesh(in, options.metres_per_unit), NAN};
+}
+
+}  // namespace
+
+void PrepareOptions::Check() const {
+  if (order < 0 || order > 2) {
+    throw InputError("--order", fmt::format("got {}, must be 1 or 2", order),
+                     "1: tetrahedra of 4 nodes; 2: of 10 nodes.");
+  }
+  generate.Check();
+}
+
+MeshReport PrepareMesh(const std::filesystem::path& in, const std::filesystem::path& out,
+                       const PrepareOptions& options) {
+  options.Check();
+  if (!out.empty()) CheckCanWriteMesh(out);
+  auto [mesh, solid_volume] = ReadOrGenerate(in, options);
+  CheckMesh(mesh, in.string());
+  mesh = WithSurfaceGroups(std::move(mesh), options.groups, in.string());
+  if (options.order == 1) mesh = LowerOrder(mesh);
+  if (options.order == 2) mesh = RaiseOrder(mesh);
+  CheckMesh(mesh, in.string());  // a curved element may be sound and its corners not
+
+  MeshReport report = ExamineMesh(mesh, solid_volume);
+  if (out.empty()) return report;
+  const double in_unit = CarriesItsUnit(in) ? 1e-3 : options.metres_per_unit;
+  const double out_unit =
+      std::isnan(options.out_metres_per_unit) ? in_unit : options.out_metres_per_unit;
+  WriteMesh(out, mesh, out_unit);
+  if (!KeepsNames(out) && !mesh.surface_groups.empty()) {
+    report.warnings.push_back(
+        fmt::format("{} keeps no surface groups. Write .msh if a scene needs them.", out.string()));
+  }
+  return report;
+}
+
+}  // namespace softforce::mesh

@@ -1,0 +1,76 @@
+#include "mesh/vtk_grid.h"
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <optional>
+#include <string>
+
+namespace softforce::mesh {
+namespace {
+
+vtkNew<vtkDoubleArray> ToVtk(const Eigen::Matrix3Xd& vectors) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(vectors.cols());
+  std::copy_n(vectors.data(), vectors.size(), array->GetPointer(0));
+  return array;
+}
+
+std::optional<int> AsInteger(const std::string& text) {
+  int value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+// The number that stands for each region in the file.
+std::vector<int> RegionValues(const std::vector<std::string>& names) {
+  std::vector<int> values;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    values.push_back(AsInteger(names[i]).value_or(static_cast<int>(i) + 1));
+  }
+  return values;
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
+                                               const std::vector<PointField>& fields) {
+  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(ToVtk(mesh.nodes));
+  grid->SetPoints(points);
+  grid->Allocate(mesh.num_elements());
+  for (int e = 0; e < mesh.num_elements(); ++e) {
+    std::array<vtkIdType, 10> nodes{};
+    std::copy_n(mesh.elements.col(e).begin(), mesh.elements.rows(), nodes.begin());
+    grid->InsertNextCell(mesh.order() == 2 ? VTK_QUADRATIC_TETRA : VTK_TETRA, mesh.elements.rows(),
+                         nodes.data());
+  }
+  for (const PointField& field : fields) {
+    assert(field.values.cols() == mesh.nodes.cols());
+    const auto array = ToVtk(field.values);
+    array->SetName(field.name.c_str());
+    grid->GetPointData()->AddArray(array);
+  }
+  if (mesh.region_names.size() > 1 || (!mesh.region_names.empty() && mesh.region_names[0] != "")) {
+    const std::vector<int> values = RegionValues(mesh.region_names);
+    vtkNew<vtkIntArray> regions;
+    regions->SetName("region");
+    for (const int region : mesh.region) regions->InsertNextValue(values[region]);
+    grid->GetCellData()->AddArray(regions);
+  }
+  return grid;
+}
+
+}  // namespace softforce::mesh

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <vector>
+
+#include "softforce/mesh/write_vtu.h"
+
+namespace softforce::mesh {
+
+// The mesh for VTK's writers: nodes, cells, fields and the cell array "region" as WriteVtu
+// describes it.
+vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
+                                               const std::vector<PointField>& fields = {});
+
+}  // namespace softforce::mesh

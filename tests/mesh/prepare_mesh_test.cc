@@ -1,0 +1,93 @@
+#include "softforce/mesh/prepare_mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/mesh_files.h"
+#include "softforce/base/input_error.h"
+#include "softforce/mesh/read_mesh.h"
+#include "softforce/mesh/write_mesh.h"
+
+namespace softforce::mesh {
+namespace {
+
+using softforce::testing::FreshFolder;
+using softforce::testing::MakeTwoRegionBox;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+// The two-region box in a file in millimetres.
+std::filesystem::path BoxFile(int order) {
+  const auto path = FreshFolder() / "box.msh";
+  WriteMesh(path, MakeTwoRegionBox(order), 1e-3);
+  return path;
+}
+
+TEST(PrepareMesh, RaisesAndLowersTheOrder) {
+  for (const int from : {1, 2}) {
+    for (const int to : {1, 2}) {
+      const auto in = BoxFile(from), out = in.parent_path() / "out.msh";
+      PrepareOptions options;
+      options.order = to;
+
+      EXPECT_EQ(PrepareMesh(in, out, options).order, to);
+      const TetMesh read = ReadMesh(out, 1e-3);
+
+      EXPECT_EQ(read.order(), to);
+      EXPECT_EQ(read.region_names, (std::vector<std::string>{"soft", "stiff"}));
+      EXPECT_EQ(read.surface_groups.size(), 2u);
+    }
+  }
+}
+
+TEST(PrepareMesh, KeepsTheOrderUnlessAsked) {
+  EXPECT_EQ(PrepareMesh(BoxFile(1), "").order, 1);
+  EXPECT_EQ(PrepareMesh(BoxFile(2), "").order, 2);
+}
+
+TEST(PrepareMesh, ConvertsAFileOntoItself) {
+  const auto path = BoxFile(2);
+  const std::string before = softforce::testing::ReadText(path);
+
+  PrepareMesh(path, path);
+
+  EXPECT_EQ(softforce::testing::ReadText(path), before);
+}
+
+TEST(PrepareMesh, WarnsThatVtkFilesLoseGroups) {
+  const auto in = BoxFile(1);
+
+  EXPECT_THAT(PrepareMesh(in, in.parent_path() / "out.vtu").warnings,
+              Contains(HasSubstr("keeps no surface groups")));
+}
+
+TEST(PrepareMesh, RefusesAMeshThatCheckMeshRefusesAndWritesNothing) {
+  TetMesh box = MakeTwoRegionBox(1);
+  std::swap(box.elements(0, 3), box.elements(1, 3));
+  const auto folder = FreshFolder();
+  WriteMesh(folder / "box.msh", box, 1e-3);
+
+  EXPECT_THAT([&] { PrepareMesh(folder / "box.msh", folder / "out.msh"); },
+              ThrowsMessage<base::InputError>(HasSubstr("inverted")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.msh"));
+}
+
+TEST(PrepareMesh, RefusesASizeForAFinishedMesh) {
+  PrepareOptions options;
+  options.generate.size = 1e-3;
+
+  EXPECT_THAT([&] { PrepareMesh(BoxFile(1), "", options); },
+              ThrowsMessage<base::InputError>(HasSubstr("--size")));
+}
+
+TEST(PrepareOptions, RefuseAnOrderOutOfRange) {
+  for (const int order : {-1, 3}) {
+    PrepareOptions options;
+    options.order = order;
+    EXPECT_THAT([&] { options.Check(); }, ThrowsMessage<base::InputError>(HasSubstr("--order")));
+  }
+}
+
+}  // namespace
+}  // namespace softforce::mesh
