@@ -74,6 +74,7 @@ std::vector<Load> ReadLoads(const Request& request, const pipeline::World& world
 fem::LoadCase LoadCaseOf(const Request& request, const std::vector<Load>& loads,
                          const pipeline::World& world) {
   fem::LoadCase load_case;
+  load_case.actuation = fem::NoActuation(world.solver->body());
   load_case.forces = Eigen::Matrix3Xd::Zero(3, world.mesh().num_nodes());
   for (const Load& load : loads) {
     for (size_t i = 0; i < load.at.nodes.size(); ++i) {
@@ -84,7 +85,7 @@ fem::LoadCase LoadCaseOf(const Request& request, const std::vector<Load>& loads,
   if (!std::isnan(request.shortening)) {
     command = {fem::CableInput::kDisplacement, request.shortening / kMmPerM};
   }
-  load_case.commands.assign(world.solver->body().cables.size(), command);
+  load_case.actuation.cables.assign(world.solver->body().cables.size(), command);
   return load_case;
 }
 
