@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <map>
 #include <memory>
 
 #include "commands/commands.h"
@@ -98,6 +99,15 @@ Command AddRun(CLI::App* program) {
          "Model error of each marker by itself, as a share of the largest marker displacement "
          "(standard deviation)")
       ->capture_default_str();
+  app->add_option(
+         "--correct-mesh", arguments->options.mesh_aim,
+         "Correct the mesh's own error as far as the once refined mesh shows it (refined), "
+         "or to the estimated limit (converged); model errors shrink with it")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, pipeline::MeshAim>{{"none", pipeline::MeshAim::kGiven},
+                                                   {"refined", pipeline::MeshAim::kRefined},
+                                                   {"converged", pipeline::MeshAim::kConverged}}))
+      ->option_text("none|refined|converged [none]");
   app->add_option("--overlay-width", arguments->options.overlay_width, "Width of overlay.mp4, px")
       ->capture_default_str();
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");

@@ -45,7 +45,8 @@ std::vector<int> RegionValues(const std::vector<std::string>& names) {
 }  // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
-                                               const std::vector<PointField>& fields) {
+                                               const std::vector<PointField>& fields,
+                                               const std::vector<CellField>& cell_fields) {
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;
   points->SetData(ToVtk(mesh.nodes));
@@ -62,6 +63,13 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
     const auto array = ToVtk(field.values);
     array->SetName(field.name.c_str());
     grid->GetPointData()->AddArray(array);
+  }
+  for (const CellField& field : cell_fields) {
+    assert(field.values.size() == mesh.num_elements());
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(field.name.c_str());
+    for (const double value : field.values) array->InsertNextValue(value);
+    grid->GetCellData()->AddArray(array);
   }
   if (mesh.region_names.size() > 1 || (!mesh.region_names.empty() && mesh.region_names[0] != "")) {
     const std::vector<int> values = RegionValues(mesh.region_names);

@@ -12,6 +12,7 @@ namespace softforce::mesh {
 // The mesh for VTK's writers: nodes, cells, fields and the cell array "region" as WriteVtu
 // describes it.
 vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
-                                               const std::vector<PointField>& fields = {});
+                                               const std::vector<PointField>& fields = {},
+                                               const std::vector<CellField>& cell_fields = {});
 
 }  // namespace softforce::mesh

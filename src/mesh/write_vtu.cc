@@ -31,9 +31,9 @@ void WriteWith(Writer& writer, const std::filesystem::path& path, vtkUnstructure
 }  // namespace
 
 void WriteVtu(const std::filesystem::path& path, const TetMesh& mesh,
-              const std::vector<PointField>& fields) {
+              const std::vector<PointField>& fields, const std::vector<CellField>& cell_fields) {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  WriteWith(*writer.Get(), path, ToVtkGrid(mesh, fields));
+  WriteWith(*writer.Get(), path, ToVtkGrid(mesh, fields, cell_fields));
 }
 
 void WriteLegacyVtk(const std::filesystem::path& path, const TetMesh& mesh) {

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "pipeline/mesh_correction.h"
 #include "pipeline/overlay_video.h"
 #include "pipeline/refusals.h"
 #include "pipeline/registration.h"
@@ -50,6 +51,18 @@ double IndexW(const World& world) {
   return inverse.cwiseAbs().colwise().sum().maxCoeff();
 }
 
+std::optional<MeshCorrection> CorrectionFor(const scene::Scene& scene, const RunOptions& options) {
+  if (options.mesh_aim == MeshAim::kGiven) return std::nullopt;
+  return CorrectMesh(scene, options.mesh_aim, options.show_progress);
+}
+
+TrackerOptions Corrected(TrackerOptions options, const std::optional<MeshCorrection>& correction) {
+  if (!correction) return options;
+  options.estimator.common_model_error *= correction->model_error_factor;
+  options.estimator.local_model_error *= correction->model_error_factor;
+  return options;
+}
+
 // A run in progress: what is known before the first frame, and what the frames add up to.
 class Job {
  public:
@@ -59,12 +72,14 @@ class Job {
         rig_(scene::LoadRig(scene_.cameras.rig)),
         sources_(Sources(scene_, options)),
         recording_(OpenRecording()),
-        world_(BuildWorld(scene_)),
+        correction_(CorrectionFor(scene_, options)),
+        world_(correction_ ? BuildWorld(correction_->scene, correction_->mesh)
+                           : BuildWorld(scene_)),
         detector_(scene_),
         standing_(FindRig(scene_, rig_, detector_, options.registration_frames, &recording_)),
         index_w_(IndexW(world_)),
         tracker_(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
-                 options.tracker) {}
+                 Corrected(options.tracker, correction_)) {}
 
   RunReport Finish();
 
@@ -82,6 +97,7 @@ class Job {
   const camera::Rig rig_;
   const std::vector<vision::Recording::Source> sources_;
   vision::Recording recording_;
+  const std::optional<MeshCorrection> correction_;
   const World world_;
   const Detector detector_;
   const Standing standing_;
@@ -175,10 +191,10 @@ void Job::Judge() {
 }
 
 void Job::WriteSummaryFile() {
-  RunFacts facts{
-      scene_,          options_,         report_,  world_,        standing_.from_fiducials,
-      frame_statuses_, marker_statuses_, index_w_, reduced_chi2_, clock_.Report(),
-      Inputs()};
+  RunFacts facts{scene_,          options_,         report_,
+                 world_,          correction_,      standing_.from_fiducials,
+                 frame_statuses_, marker_statuses_, index_w_,
+                 reduced_chi2_,   clock_.Report(),  Inputs()};
   WriteSummary(facts, options_.out / "summary.json");
 }
 

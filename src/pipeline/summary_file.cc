@@ -49,6 +49,16 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
                    {"cells", facts.world.mesh().num_elements()},
                    {"order", facts.world.mesh().order()}};
   if (std::isfinite(facts.index_w)) json["model"]["I_w_N_per_mm"] = 1e-3 * facts.index_w;
+  if (facts.correction) {
+    const MeshCorrection& correction = *facts.correction;
+    const bool refined = facts.options.mesh_aim == MeshAim::kRefined;
+    json["mesh_correction"] = {{"to", refined ? "refined" : "converged"},
+                               {"cells_given", correction.given_cells},
+                               {"bias_to_refined_percent", 100 * correction.bias.refined},
+                               {"bias_to_converged_percent", 100 * correction.bias.converged},
+                               {"youngs_modulus_factor", correction.modulus_factor},
+                               {"model_error_factor", correction.model_error_factor}};
+  }
   if (facts.registration) json["registration"] = Registration(*facts.registration);
 
   if (!facts.reduced_chi2.empty()) {

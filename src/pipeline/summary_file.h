@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "pipeline/mesh_correction.h"
 #include "pipeline/stage_clock.h"
 #include "softforce/pipeline/run.h"
 #include "softforce/vision/rig_pose.h"
@@ -14,6 +15,7 @@ struct RunFacts {
   const RunOptions& options;
   const RunReport& report;
   const World& world;
+  const std::optional<MeshCorrection>& correction;
   std::optional<vision::RigPose> registration;
   std::map<std::string, int> frame_statuses, marker_statuses;
   double index_w = NAN;              // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "pipeline/actuators.h"
 #include "pipeline/group_triangles.h"
@@ -132,11 +133,13 @@ BodyPoint PlaceOnSurface(const mesh::Surface& surface, const Eigen::Matrix3Xd& X
   return {found.at, mesh::ShapeFunctions(surface, found.at), place - found.position};
 }
 
-World BuildWorld(const scene::Scene& scene) {
+World BuildWorld(const scene::Scene& scene) { return BuildWorld(scene, LoadMesh(scene.mesh)); }
+
+World BuildWorld(const scene::Scene& scene, mesh::TetMesh mesh) {
   World world;
   const std::string file = scene.file.string();
   fem::Body body;
-  body.mesh = LoadMesh(scene.mesh);
+  body.mesh = std::move(mesh);
   world.surface = mesh::ExtractSurface(body.mesh);
   body.materials = MaterialsOf(scene, body.mesh);
   body.fixed_nodes = FixedNodes(scene, body.mesh, world.surface);

@@ -15,11 +15,18 @@ struct PointField {
   Eigen::Matrix3Xd values;  // 3×N
 };
 
+// A number of every cell, for colours.
+struct CellField {
+  std::string name;
+  Eigen::VectorXd values;  // E
+};
+
 // Writes a VTU file with the mesh in metres (4- or 10-node cells), the fields, and, unless the mesh
 // is one unnamed region, the cell array "region": a region named by an integer has that value,
 // others have 1 + their index. Surface groups are not written. The same mesh gives the same bytes.
 // Throws InputError if the file cannot be written.
 void WriteVtu(const std::filesystem::path& path, const TetMesh& mesh,
-              const std::vector<PointField>& fields = {});
+              const std::vector<PointField>& fields = {},
+              const std::vector<CellField>& cell_fields = {});
 
 }  // namespace softforce::mesh

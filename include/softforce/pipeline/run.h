@@ -12,6 +12,10 @@
 
 namespace softforce::pipeline {
 
+// What the mesh's own error is corrected to, see AssessMesh: nothing, what the once refined mesh
+// shows, or the limit that is estimated from it.
+enum class MeshAim { kGiven, kRefined, kConverged };
+
 struct RunOptions {
   std::filesystem::path out = "out";           // folder for the results; made if it is not there
   std::map<std::string, std::string> sources;  // camera → file; instead of those in the scene
@@ -23,7 +27,8 @@ struct RunOptions {
   bool vtu = false;     // write a ParaView series
   bool show_progress = true;
   int overlay_width = 1920;  // px, of all cameras side by side
-  TrackerOptions tracker;
+  MeshAim mesh_aim = MeshAim::kGiven;
+  TrackerOptions tracker;  // model errors: for the given mesh; less of them is left if corrected
   const std::atomic<bool>* stop =
       nullptr;  // set from outside: end after this frame, with complete files
 

@@ -44,6 +44,10 @@ BodyPoint PlaceOnSurface(const mesh::Surface& surface, const Eigen::Matrix3Xd& X
 // cable off the surface, or a chamber that is not closed.
 World BuildWorld(const scene::Scene& scene);
 
+// The same with another mesh of the same body, such as a refined one: what the scene says in places
+// and boxes (supports, markers, candidates, cables) is looked up anew in it.
+World BuildWorld(const scene::Scene& scene, mesh::TetMesh mesh);
+
 // What the scene's actuators are told at a time.
 fem::Actuation ActuationAt(const scene::Scene& scene, double time_s);
 

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "softforce/pipeline/mesh_convergence.h"
+
+namespace softforce::pipeline {
+
+// The places where the cells lie that have most of the bias (`share` of each cell, sum 1), by
+// cells that hang together. `ratio`: what is left of the error when the size is halved.
+std::vector<CoarsePlace> CoarsePlaces(const mesh::TetMesh& mesh, const Eigen::VectorXd& share,
+                                      double ratio);
+
+}  // namespace softforce::pipeline
