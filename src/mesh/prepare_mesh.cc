@@ -31,8 +31,8 @@ void PrepareOptions::Check() const {
   generate.Check();
 }
 
-MeshReport PrepareMesh(const std::filesystem::path& in, const std::filesystem::path& out,
-                       const PrepareOptions& options) {
+PreparedMesh PrepareMesh(const std::filesystem::path& in, const std::filesystem::path& out,
+                         const PrepareOptions& options) {
   options.Check();
   if (!out.empty()) CheckCanWriteMesh(out);
   auto [mesh, solid_volume] = ReadOrGenerate(in, options);
@@ -43,7 +43,7 @@ MeshReport PrepareMesh(const std::filesystem::path& in, const std::filesystem::p
   CheckMesh(mesh, in.string());  // a curved element may be sound and its corners not
 
   MeshReport report = ExamineMesh(mesh, solid_volume);
-  if (out.empty()) return report;
+  if (out.empty()) return {std::move(mesh), std::move(report)};
   const double in_unit = CarriesItsUnit(in) ? 1e-3 : options.metres_per_unit;
   const double out_unit =
       std::isnan(options.out_metres_per_unit) ? in_unit : options.out_metres_per_unit;
@@ -52,7 +52,7 @@ MeshReport PrepareMesh(const std::filesystem::path& in, const std::filesystem::p
     report.warnings.push_back(
         fmt::format("{} keeps no surface groups. Write .msh if a scene needs them.", out.string()));
   }
-  return report;
+  return {std::move(mesh), std::move(report)};
 }
 
 }  // namespace softforce::mesh

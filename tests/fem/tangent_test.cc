@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <tuple>
 
+#include "fem/tangent_product.h"
 #include "softforce/fem/static_solver.h"
 #include "support/figures.h"
 #include "support/irregular_patch.h"
@@ -70,6 +71,27 @@ TEST_P(Tangent, IsTheDerivativeOfTheForcesFarFromRest) {
     // Central differences of 1e-7 m on cells of 5 mm: (2e-5)², times the laws' higher derivatives.
     EXPECT_LT(testing::Record("tangent, worst entry", WorstEntry(sensitivity, free)), 1e-7);
   }
+}
+
+// The laws without a limit of compression have an indefinite tangent here: seen as assembled.
+TEST_P(Tangent, IsTheDerivativeOfTheForcesWhenPressedFromAllSides) {
+  const auto [model, order] = GetParam();
+  const Body body = testing::IrregularPatch(model, order);
+  const Eigen::Matrix3Xd u = -0.3 * body.mesh.nodes + testing::Unevenness(body, 3e-4);
+  Eigen::Matrix3Xd direction = testing::Unevenness(body, 1);
+  for (const int node : body.fixed_nodes) direction.col(node).setZero();
+  const StaticSolver solver(body, "body");
+  const double h = 1e-7;  // m
+  Eigen::Matrix3Xd difference =
+      (solver.InternalForces(u + h * direction) - solver.InternalForces(u - h * direction)) /
+      (2 * h);
+  for (const int node : body.fixed_nodes) difference.col(node).setZero();
+
+  const Eigen::Matrix3Xd product = testing::TangentTimes(body, u, {}, {}, direction);
+
+  // As above; and rounding, of forces in which much cancels.
+  EXPECT_LT((product - difference).colwise().norm().maxCoeff(),
+            1e-6 * difference.colwise().norm().maxCoeff());
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -31,7 +31,7 @@ TEST(PrepareMesh, RaisesAndLowersTheOrder) {
       PrepareOptions options;
       options.order = to;
 
-      EXPECT_EQ(PrepareMesh(in, out, options).order, to);
+      EXPECT_EQ(PrepareMesh(in, out, options).report.order, to);
       const TetMesh read = ReadMesh(out, 1e-3);
 
       EXPECT_EQ(read.order(), to);
@@ -42,8 +42,8 @@ TEST(PrepareMesh, RaisesAndLowersTheOrder) {
 }
 
 TEST(PrepareMesh, KeepsTheOrderUnlessAsked) {
-  EXPECT_EQ(PrepareMesh(BoxFile(1), "").order, 1);
-  EXPECT_EQ(PrepareMesh(BoxFile(2), "").order, 2);
+  EXPECT_EQ(PrepareMesh(BoxFile(1), "").report.order, 1);
+  EXPECT_EQ(PrepareMesh(BoxFile(2), "").report.order, 2);
 }
 
 TEST(PrepareMesh, ConvertsAFileOntoItself) {
@@ -58,7 +58,7 @@ TEST(PrepareMesh, ConvertsAFileOntoItself) {
 TEST(PrepareMesh, WarnsThatVtkFilesLoseGroups) {
   const auto in = BoxFile(1);
 
-  EXPECT_THAT(PrepareMesh(in, in.parent_path() / "out.vtu").warnings,
+  EXPECT_THAT(PrepareMesh(in, in.parent_path() / "out.vtu").report.warnings,
               Contains(HasSubstr("keeps no surface groups")));
 }
 

@@ -19,10 +19,15 @@ struct PrepareOptions {
   void Check() const;  // throws InputError naming the command's option
 };
 
+struct PreparedMesh {
+  TetMesh mesh;
+  MeshReport report;
+};
+
 // Reads a mesh or generates one from a geometry, names groups of its surface, raises or lowers the
 // order, refuses what no simulation can use (CheckMesh), writes the mesh to `out` unless that is
 // empty, and reports on its quality. Throws InputError; then nothing is written.
-MeshReport PrepareMesh(const std::filesystem::path& in, const std::filesystem::path& out,
-                       const PrepareOptions& options = {});
+PreparedMesh PrepareMesh(const std::filesystem::path& in, const std::filesystem::path& out,
+                         const PrepareOptions& options = {});
 
 }  // namespace softforce::mesh
