@@ -6,6 +6,7 @@
 
 #include "softforce/base/input_error.h"
 #include "support/bar_experiment.h"
+#include "support/hollow_box.h"
 
 namespace softforce::estimation {
 namespace {
@@ -72,6 +73,39 @@ TEST(ForceEstimator, UsesCablesByDisplacementAsKnownInputs) {
   ASSERT_TRUE(estimate.ok()) << estimate.BriefReport();
   EXPECT_LT((estimate.intensity - force).norm(), 1e-5);               // N
   EXPECT_NEAR(estimator.state().tension(0), truth.tension(0), 1e-5);  // N
+}
+
+TEST(ForceEstimator, UsesPressureAsAKnownInput) {
+  constexpr double kHalf = 0.02;  // m
+  fem::Body body;
+  body.mesh = mesh::RaiseOrder(testing::MakeHollowBox(2, kHalf));
+  body.materials = {testing::Silicone()};
+  body.chambers = {testing::HollowOf(body.mesh, kHalf)};
+  for (int node = 0; node < body.mesh.num_nodes(); ++node) {
+    if (body.mesh.nodes(2, node) < -kHalf + 1e-9) body.fixed_nodes.push_back(node);
+  }
+  const std::vector<ForceSite> sites{
+      {"top", testing::PointOf(body, {0.01, 0, kHalf}), Eigen::Matrix3d::Identity()}};
+  const Eigen::Vector3d force(0.2, -0.1, -0.6);  // N
+  fem::StaticSolver solver(body, "box");
+  fem::Equilibrium truth = solver.AtRest();
+  fem::LoadCase load = testing::LoadAt(body, sites[0].at, force);
+  load.actuation.pressures = {15e3};  // moves the top by as much as the force does
+  ASSERT_TRUE(solver.Solve(load, &truth).ok());
+  std::vector<Observation> seen;
+  for (const double x : {-0.015, 0.0, 0.015}) {
+    for (const double y : {-0.015, 0.0, 0.015}) {
+      const mesh::NodalWeights at = testing::PointOf(body, {x, y, kHalf});
+      seen.push_back({at, Eigen::Vector3d::Zero(), at.Apply(body.mesh.nodes) + at.Apply(truth.u),
+                      Eigen::Matrix3d::Identity() / kNoise});
+    }
+  }
+
+  ForceEstimator estimator(&solver, sites, testing::ExactModel());
+  const ForceEstimate estimate = estimator.Estimate(seen, load.actuation);
+
+  ASSERT_TRUE(estimate.ok()) << estimate.BriefReport();
+  EXPECT_LT((estimate.intensity - force).norm(), 1e-4);  // N; the observations are exact
 }
 
 TEST(ForceEstimator, TwoEquationsFromOneCameraCountAsTwo) {

@@ -129,6 +129,27 @@ TEST(StaticSolver, SaysThatAStrutBuckles) {
   }
 }
 
+// Laws without a limit of compression let a dead load push a cell through itself.
+TEST(StaticSolver, SaysThatACellIsCrushed) {
+  Body body;
+  body.mesh = testing::MakeBox(2, 2, 2, {0.02, 0.02, 0.02});
+  body.materials = {{MaterialModel::kCorotational, 200e3, 0.3}};
+  for (int n = 0; n < body.mesh.num_nodes(); ++n) {
+    if (body.mesh.nodes(2, n) < 1e-9) body.fixed_nodes.push_back(n);
+  }
+  StaticSolver solver(body, "body");
+  Equilibrium state = solver.AtRest();
+  const auto top = testing::PointOf(body, {0.01, 0.01, 0.02});
+
+  const SolveSummary summary = solver.Solve(testing::LoadAt(body, top, {0, 0, -40}), &state);
+
+  ASSERT_EQ(summary.status, SolveSummary::Status::kInverted) << summary.BriefReport();
+  EXPECT_GT(summary.reached_share, 0);
+  EXPECT_LT(summary.reached_share, 1);
+  EXPECT_GT(summary.inverted_at.z(), 0.01);  // m; in the upper half, where the load is
+  EXPECT_NE(summary.Advice().find("crushed around"), std::string::npos);
+}
+
 TEST(StaticSolver, RefusesOptionsOutOfRange) {
   const auto refuses = [](auto change) {
     StaticSolverOptions options;
