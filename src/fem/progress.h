@@ -23,15 +23,16 @@ class Progress {
   int steps() const { return steps_; }
 
   // m; how far a node may still move after the last step. Infinite while the iteration does not
-  // contract, or has taken one step only.
+  // contract, and before the third step: the first one shows what the load has changed, so that
+  // the second alone tells little of how the iteration contracts.
   double remaining() const {
-    if (!(contraction_ < 1)) return std::numeric_limits<double>::infinity();
+    if (steps_ < 3 || !(contraction_ < 1)) return std::numeric_limits<double>::infinity();
     return softness_ * root_ * contraction_ / (1 - contraction_);
   }
 
   // How many more steps will bring what remains below `tolerance` (m).
   double steps_left(double tolerance) const {
-    if (steps_ < 2) return 1;
+    if (steps_ < 3) return 1;
     if (!(contraction_ < 1)) return std::numeric_limits<double>::infinity();
     return std::max(0.0, std::log(tolerance / remaining()) / std::log(contraction_));
   }

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/factor_kernel.h"
+
 namespace softforce::fem {
 
 // A supernodal factor L of P A Pᵀ = L Lᵀ, rounded to single precision. A solve with one right-hand
@@ -19,6 +21,7 @@ class SingleFactor {
   Eigen::VectorXd Solve(const Eigen::VectorXd& b) const;
 
  private:
+  const FactorKernels kernels_ = BestFactorKernels();
   const cholmod_factor* pattern_ = nullptr;
   std::vector<float> x_;
   mutable Eigen::VectorXf work_, rows_;

@@ -1,6 +1,8 @@
 // Compiled for processors with AVX2 and FMA: see CMakeLists.txt.
 #include "fem/element_kernel.h"
+#include "fem/factor_kernel.h"
 
 namespace softforce::fem::avx2 {
 #include "fem/element_kernel_body.h"
+#include "fem/factor_kernel_body.h"
 }  // namespace softforce::fem::avx2
