@@ -97,7 +97,8 @@ void Elements::FillBatch(const Batch& batch, const Eigen::Matrix3Xd& X) {
   const std::vector<Eigen::Vector4d> points = IntegrationPoints(n);
   for (int lane = 0; lane < kLanes; ++lane) {
     const bool is_there = batch.elements[lane] >= 0;
-    const Eigen::Matrix3Xd X_e = NodalValues(batch.elements[is_there ? lane : 0], X);
+    const Eigen::Matrix3Xd X_e =
+        NodalValues<Eigen::Dynamic>(batch.elements[is_there ? lane : 0], X);
     for (int p = 0; p < num_points(); ++p) {
       const Eigen::Matrix3Xd d = ShapeDerivatives(n, points[p]);
       const Eigen::Matrix3d jacobian = X_e * d.transpose();  // dX / d(b1, b2, b3)
@@ -111,16 +112,21 @@ void Elements::FillBatch(const Batch& batch, const Eigen::Matrix3Xd& X) {
   }
 }
 
-Eigen::Matrix3Xd Elements::Gradients(int element, int point) const {
-  const int n = nodes_per_element();
+template <int kNodes>
+Elements::NodalMatrix<kNodes> Elements::Gradients(int element, int point) const {
   const Place& at = place_of_[element];
   const double* first = gradients_.data() + batches_[at.batch].first_gradient +
-                        size_t{3} * n * point * kLanes + at.lane;
-  return Eigen::Map<const Eigen::Matrix3Xd, 0, Eigen::Stride<3 * kLanes, kLanes>>(first, 3, n);
+                        size_t{3} * nodes_per_element() * point * kLanes + at.lane;
+  return Eigen::Map<const NodalMatrix<kNodes>, 0, Eigen::Stride<3 * kLanes, kLanes>>(
+      first, 3, nodes_per_element());
 }
 
-Eigen::Matrix3Xd Elements::NodalValues(int element, const Eigen::Matrix3Xd& field) const {
-  return field(Eigen::all, nodes_.col(element));
+template <int kNodes>
+Elements::NodalMatrix<kNodes> Elements::NodalValues(int element,
+                                                    const Eigen::Matrix3Xd& field) const {
+  NodalMatrix<kNodes> values(3, nodes_per_element());
+  for (int i = 0; i < values.cols(); ++i) values.col(i) = field.col(nodes_(i, element));
+  return values;
 }
 
 double Elements::EnergyAndForces(const Eigen::Matrix3Xd& u, Eigen::Matrix3Xd* forces) const {
@@ -161,9 +167,9 @@ double Elements::EnergyAndForcesOneByOne(const Batch& batch, const Eigen::Matrix
   double energy = 0;
   for (const int e : batch.elements) {
     if (e < 0) continue;
-    const Eigen::Matrix3Xd u_e = NodalValues(e, u);
+    const Eigen::Matrix3Xd u_e = NodalValues<Eigen::Dynamic>(e, u);
     for (int p = 0; p < num_points(); ++p) {
-      const Eigen::Matrix3Xd g = Gradients(e, p);
+      const Eigen::Matrix3Xd g = Gradients<Eigen::Dynamic>(e, p);
       const MaterialResponse response =
           Evaluate(material_of_[e], Eigen::Matrix3d::Identity() + u_e * g.transpose(), false);
       if (!response.valid) return std::numeric_limits<double>::infinity();
@@ -178,9 +184,10 @@ double Elements::EnergyAndForcesOneByOne(const Batch& batch, const Eigen::Matrix
 int Elements::InvertedElement(const Eigen::Matrix3Xd& u) const {
   for (int e = 0; e < num_elements(); ++e) {
     if (HasBarrier(material_of_[e].model)) continue;
-    const Eigen::Matrix3Xd u_e = NodalValues(e, u);
+    const Eigen::Matrix3Xd u_e = NodalValues<Eigen::Dynamic>(e, u);
     for (int p = 0; p < num_points(); ++p) {
-      const Eigen::Matrix3d F = Eigen::Matrix3d::Identity() + u_e * Gradients(e, p).transpose();
+      const Eigen::Matrix3d F =
+          Eigen::Matrix3d::Identity() + u_e * Gradients<Eigen::Dynamic>(e, p).transpose();
       if (!(F.determinant() > 0)) return e;
     }
   }
@@ -196,10 +203,10 @@ Eigen::Vector3d Elements::Centre(int element, const Eigen::Matrix3Xd& x) const {
 template <int kNodes>
 void Elements::Stiffness(int element, const Eigen::Matrix3Xd& u,
                          Eigen::Matrix<double, 3 * kNodes, 3 * kNodes>* K) const {
-  const Eigen::Matrix<double, 3, kNodes> u_e = NodalValues(element, u);
+  const Eigen::Matrix<double, 3, kNodes> u_e = NodalValues<kNodes>(element, u);
   K->setZero();
   for (int p = 0; p < num_points(); ++p) {
-    const Eigen::Matrix<double, 3, kNodes> g = Gradients(element, p);
+    const Eigen::Matrix<double, 3, kNodes> g = Gradients<kNodes>(element, p);
     const MaterialResponse response =
         Evaluate(material_of_[element], Eigen::Matrix3d::Identity() + u_e * g.transpose(), true);
     const Matrix9d A = Weight(element, p) * response.dPdF;

@@ -61,13 +61,18 @@ class Elements {
                                  Eigen::Matrix3Xd* forces) const;
 
   int num_points() const { return nodes_.rows() == 10 ? 4 : 1; }
-  // ∂shape/∂X, a column per node, 1/m.
-  Eigen::Matrix3Xd Gradients(int element, int point) const;
+  // A column per node of one element, whose number may be known to the compiler.
+  template <int kNodes>
+  using NodalMatrix = Eigen::Matrix<double, 3, kNodes>;
+  // ∂shape/∂X, 1/m.
+  template <int kNodes>
+  NodalMatrix<kNodes> Gradients(int element, int point) const;
   double Weight(int element, int point) const {  // m³
     const Place& at = place_of_[element];
     return weights_[batches_[at.batch].first_weight + point * kLanes + at.lane];
   }
-  Eigen::Matrix3Xd NodalValues(int element, const Eigen::Matrix3Xd& field) const;
+  template <int kNodes>
+  NodalMatrix<kNodes> NodalValues(int element, const Eigen::Matrix3Xd& field) const;
 
   Eigen::MatrixXi nodes_;
   std::vector<Material> material_of_;  // per element
