@@ -37,16 +37,21 @@ std::vector<int> Parts(const mesh::TetMesh& mesh) {
 void CheckClosed(const Chamber& chamber, const mesh::TetMesh& mesh, const std::set<int>& fixed,
                  const std::string& where) {
   std::map<std::pair<int, int>, int> walls_at;  // edge, both ways round → walls
+  std::set<std::pair<int, int>> held;
   for (Eigen::Index t = 0; t < chamber.walls.cols(); ++t) {
     for (int i = 0; i < 3; ++i) {
-      ++walls_at[std::minmax(int{chamber.walls(i, t)}, int{chamber.walls((i + 1) % 3, t)})];
+      const int from = chamber.walls(i, t), to = chamber.walls((i + 1) % 3, t);
+      const std::pair<int, int> edge = std::minmax(from, to);
+      ++walls_at[edge];
+      const bool middle_held =
+          chamber.walls.rows() == 3 || fixed.count(chamber.walls(3 + i, t)) > 0;
+      if (fixed.count(from) > 0 && fixed.count(to) > 0 && middle_held) held.insert(edge);
     }
   }
   int open = 0;
   Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();
   for (const auto& [edge, walls] : walls_at) {
-    const bool held = fixed.count(edge.first) > 0 && fixed.count(edge.second) > 0;
-    if (walls % 2 == 0 || held) continue;
+    if (walls % 2 == 0 || held.count(edge) > 0) continue;
     if (open++ == 0) {
       at_mm = 500 * (mesh.nodes.col(edge.first) + mesh.nodes.col(edge.second));
     }

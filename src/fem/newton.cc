@@ -8,7 +8,8 @@
 namespace softforce::fem {
 namespace {
 
-constexpr int kFreshSteps = 2;  // that a small change of load takes with a fresh factor
+constexpr int kFreshSteps = 2;          // that a small change of load takes with a fresh factor
+constexpr int kMostUnstableSteps = 20;  // in a row, with a tangent that had to be shifted
 
 }  // namespace
 
@@ -109,19 +110,34 @@ double StaticSolver::State::SearchAlong(const LoadCase& load, const Equilibrium&
   return 0;
 }
 
+// Whether no cable without tension is longer than its command lets it be.
+bool StaticSolver::State::SlackCablesFit(const LoadCase& load, const Equilibrium& state,
+                                         double tolerance) const {
+  const Eigen::VectorXd shortening = rest_length - CableLengths(state.u);
+  for (int c = 0; c < num_cables(); ++c) {
+    const CableCommand& command = load.actuation.cables[c];
+    if (command.input != CableInput::kDisplacement || state.tension(c) > 0) continue;
+    if (shortening(c) < command.value - tolerance) return false;
+  }
+  return true;
+}
+
 SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, Equilibrium* state,
                                                  SolveSummary* summary) {
   const double tolerance = options.tolerance * diagonal;
   Balance balance = Evaluate(load, state->u);
-  if (!std::isfinite(balance.energy)) return SolveSummary::Status::kInverted;
+  if (!std::isfinite(balance.energy)) return SolveSummary::Status::kNotConverged;
   Progress progress;
+  int unstable_steps = 0;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const bool fresh = !factor_valid;
     if (fresh) {
+      if (unstable_steps >= kMostUnstableSteps) return SolveSummary::Status::kUnstable;
       ++summary->factorisations;
       if (!Factorise(state->u, state->tension, load.actuation.pressures)) {
         return SolveSummary::Status::kUnstable;
       }
+      unstable_steps = inverse.shift() > 0 ? unstable_steps + 1 : 0;
     }
     ++summary->iterations;
     Step step;
@@ -142,7 +158,14 @@ SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, Equilibri
 
     progress.Add(move, -step.slope);
     summary->last_step = move;
-    if (share == 1 && (move <= tolerance || 2 * progress.remaining() <= tolerance)) {
+    // A single small step is believed if its factor was made for it, or if it took away most of
+    // what the residual had along it: an old factor may take a soft body for a stiff one.
+    const double left = std::abs(step.free_du.dot(residual.col(0)));
+    const bool small =
+        move <= tolerance && (fresh || move <= 0.01 * tolerance ||
+                              left <= 0.1 * std::abs(step.free_du.dot(step.free_residual)));
+    const bool settled = small || 2 * progress.remaining() <= tolerance;
+    if (share == 1 && settled && SlackCablesFit(load, *state, tolerance)) {
       return inverse.shift() > 0 ? SolveSummary::Status::kUnstable
                                  : SolveSummary::Status::kConverged;
     }

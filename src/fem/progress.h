@@ -14,7 +14,9 @@ class Progress {
  public:
   void Add(double move, double energy) {  // m, J
     const double root = std::sqrt(std::max(0.0, energy));
-    contraction_ = steps_ > 0 ? root / root_ : std::numeric_limits<double>::infinity();
+    const double contraction = steps_ > 0 ? root / root_ : 0;
+    contraction_ = std::max(contraction, last_contraction_);
+    last_contraction_ = contraction;
     if (root > 0) softness_ = std::max(softness_, move / root);
     root_ = root;
     ++steps_;
@@ -23,8 +25,8 @@ class Progress {
   int steps() const { return steps_; }
 
   // m; how far a node may still move after the last step. Infinite while the iteration does not
-  // contract, and before the third step: the first one shows what the load has changed, so that
-  // the second alone tells little of how the iteration contracts.
+  // contract, and before the third step: how the first one, with a tangent made for it, contracted
+  // says little of the next ones.
   double remaining() const {
     if (steps_ < 3 || !(contraction_ < 1)) return std::numeric_limits<double>::infinity();
     return softness_ * root_ * contraction_ / (1 - contraction_);
@@ -39,9 +41,9 @@ class Progress {
 
  private:
   int steps_ = 0;
-  double root_ = 0;      // √J, of the last step
-  double softness_ = 0;  // m/√J
-  double contraction_ = std::numeric_limits<double>::infinity();
+  double root_ = 0;                                // √J, of the last step
+  double softness_ = 0;                            // m/√J
+  double contraction_ = 0, last_contraction_ = 0;  // the former is the worse of the last two
 };
 
 }  // namespace softforce::fem

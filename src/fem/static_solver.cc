@@ -54,12 +54,13 @@ std::string SolveSummary::Advice() const {
     case Status::kConverged:
       return "";
     case Status::kNotConverged:
-      return "Check the units of loads and stiffness; spread point forces over a patch; otherwise "
-             "allow more iterations or load halvings.";
+      return "Check the units of loads, shortenings and stiffness; spread point forces over a "
+             "patch; otherwise allow more iterations or load halvings.";
     case Status::kUnstable:
-      return "The body buckles, snaps or bursts beyond that load. Check the units of loads and "
-             "stiffness; drive cables by displacement instead of tension, which holds the body "
-             "where a tension lets it go; lower the pressure.";
+      return "The body buckles, snaps or bursts beyond that load, or its stiffest material is "
+             "many thousand times stiffer than its softest. Check the units of loads and "
+             "stiffness; lower the pressure of chambers; drive cables by displacement, which holds "
+             "the body where a tension lets it go.";
     case Status::kInverted:
       return fmt::format(
           "The body is crushed around ({:.1f} {:.1f} {:.1f}) mm. Check the units of loads and "
@@ -75,6 +76,10 @@ Actuation NoActuation(const Body& body) {
   none.cables.resize(body.cables.size());
   none.pressures.resize(body.chambers.size());
   return none;
+}
+
+LoadCase OwnWeight(const Body& body) {
+  return {Eigen::Matrix3Xd::Zero(3, body.mesh.num_nodes()), NoActuation(body)};
 }
 
 StaticSolver::StaticSolver(Body body, const std::string& where,
@@ -94,8 +99,8 @@ Equilibrium StaticSolver::AtRest() const {
   Equilibrium rest;
   rest.u = Eigen::Matrix3Xd::Zero(3, n);
   rest.tension = rest.shortening = Eigen::VectorXd::Zero(cables);
-  rest.load.forces = rest.u;
-  rest.load.actuation = NoActuation(state_->body);
+  rest.load = OwnWeight(state_->body);
+  rest.load.weight_share = 0;
   return rest;
 }
 
@@ -105,6 +110,7 @@ namespace {
 LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
   const auto mix = [share](double start, double end) { return (1 - share) * start + share * end; };
   LoadCase load = to;
+  load.weight_share = mix(from.load.weight_share, to.weight_share);
   load.forces = (1 - share) * from.load.forces + share * to.forces;
   for (size_t c = 0; c < load.actuation.cables.size(); ++c) {
     const int i = static_cast<int>(c);
@@ -126,10 +132,12 @@ SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
   State& s = *state_;
   assert(load.actuation.cables.size() == s.body.cables.size());
   assert(load.actuation.pressures.size() == s.body.chambers.size());
+  assert(load.forces.allFinite());
   SolveSummary summary;
   const Equilibrium from = *state;
   double reached = 0;
   double stride = 1;
+  bool just_failed = false;
   const double least = std::ldexp(1.0, -s.options.max_load_halvings);
   while (reached < 1) {
     const double next = std::min(1.0, reached + stride);
@@ -146,8 +154,10 @@ SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
       trial.shortening = s.rest_length - s.CableLengths(trial.u);
       *state = std::move(trial);
       reached = next;
-      stride = std::min(2 * stride, 1.0);
+      if (!just_failed) stride = std::min(2 * stride, 1.0);
+      just_failed = false;
     } else {
+      just_failed = true;
       s.factor_valid = false;
       stride /= 2;
       if (stride < least) break;

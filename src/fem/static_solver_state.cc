@@ -67,7 +67,10 @@ bool StaticSolver::State::Factorise(const Eigen::Matrix3Xd& u, const Eigen::Vect
 }
 
 bool StaticSolver::State::StableAt(const Equilibrium& state) {
-  return Factorise(state.u, state.tension, state.load.actuation.pressures) && inverse.shift() == 0;
+  const bool stable =
+      Factorise(state.u, state.tension, state.load.actuation.pressures) && inverse.shift() == 0;
+  factor_valid = stable;  // a shifted one is good for a step from where it was made, no more
+  return stable;
 }
 
 StaticSolver::State::Balance StaticSolver::State::Evaluate(const LoadCase& load,
@@ -77,7 +80,7 @@ StaticSolver::State::Balance StaticSolver::State::Evaluate(const LoadCase& load,
     elastic.energy = elements.EnergyAndForces(u, &elastic.forces);
     elastic.u = u;
   }
-  const Eigen::Matrix3Xd dead = load.forces + weight;
+  const Eigen::Matrix3Xd dead = load.forces + load.weight_share * weight;
   Balance balance{elastic.energy - dead.cwiseProduct(u).sum(), elastic.forces - dead};
   for (size_t c = 0; c < body.chambers.size(); ++c) {
     const double pressure = load.actuation.pressures[c];

@@ -68,6 +68,7 @@ struct StaticSolver::State {
   double SearchAlong(const LoadCase& load, const Equilibrium& at, const Step& step,
                      Balance* balance);
 
+  bool SlackCablesFit(const LoadCase& load, const Equilibrium& state, double tolerance) const;
   SolveSummary::Status StalledStatus() const;
   // Moves `state` to the equilibrium under `load`; why not, if it cannot.
   SolveSummary::Status Newton(const LoadCase& load, Equilibrium* state, SolveSummary* summary);

@@ -37,8 +37,8 @@ TangentAssembler::TangentAssembler(const Body& body, const Elements& elements) :
       for (int i = 0; i <= j; ++i) {
         const int a = free_index_[elements.node(e, i)];
         const int b = free_index_[elements.node(e, j)];
-        cell_positions_.push_back(a < 0 || b < 0 ? -1
-                                                 : BlockPosition(std::max(a, b), std::min(a, b)));
+        element_positions_.push_back(
+            a < 0 || b < 0 ? -1 : BlockPosition(std::max(a, b), std::min(a, b)));
       }
     }
   }
@@ -123,9 +123,9 @@ void TangentAssembler::AddSymmetric(int node_i, int node_j, const Eigen::Matrix3
 }
 
 template <int kNodes>
-void TangentAssembler::AddCells(const Elements& elements, const Eigen::Matrix3Xd& u) {
+void TangentAssembler::AddElements(const Elements& elements, const Eigen::Matrix3Xd& u) {
   Eigen::Matrix<double, 3 * kNodes, 3 * kNodes> K;
-  const int* position = cell_positions_.data();
+  const int* position = element_positions_.data();
   for (int e = 0; e < elements.num_elements(); ++e) {
     elements.Stiffness<kNodes>(e, u, &K);
     for (int j = 0; j < kNodes; ++j) {
@@ -148,9 +148,9 @@ void TangentAssembler::Assemble(const Elements& elements, const Eigen::Matrix3Xd
                                 const std::vector<double>& pressures) {
   std::fill(matrix_.value.begin(), matrix_.value.end(), 0.0);
   if (elements.nodes_per_element() == 10) {
-    AddCells<10>(elements, u);
+    AddElements<10>(elements, u);
   } else {
-    AddCells<4>(elements, u);
+    AddElements<4>(elements, u);
   }
   const Eigen::Matrix3Xd x = body_.mesh.nodes + u;
   const auto add = [&](int i, int j, const Eigen::Matrix3d& K_ij) { AddSymmetric(i, j, K_ij); };

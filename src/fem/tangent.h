@@ -46,7 +46,7 @@ class TangentAssembler {
   void AddBlock(int position, int column_node, const Eigen::Matrix3d& block);
   void AddSymmetric(int node_i, int node_j, const Eigen::Matrix3d& K_ij);  // mesh numbering
   template <int kNodes>
-  void AddCells(const Elements& elements, const Eigen::Matrix3Xd& u);
+  void AddElements(const Elements& elements, const Eigen::Matrix3Xd& u);
 
   const Body& body_;
   std::vector<int> free_index_;
@@ -55,7 +55,7 @@ class TangentAssembler {
   std::vector<int> block_start_,
       block_row_;  // block pattern: columns of free nodes, rows ascending
   std::vector<size_t> held_entries_, held_diagonal_;  // in matrix_.value, of held components
-  std::vector<int> cell_positions_;  // per cell and pair i ≤ j of its nodes; −1: a fixed node
+  std::vector<int> element_positions_;  // per cell and pair i ≤ j of its nodes; −1: a fixed node
   LowerBlocks matrix_;
 };
 

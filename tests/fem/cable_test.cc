@@ -99,8 +99,7 @@ TEST(Cable, SensitivityHoldsTheCommandedDisplacement) {
   const Eigen::VectorXd slope = ((up.u - down.u) / (2 * h)).reshaped();
   EXPECT_LT((sensitivity.du - slope).norm(), 1e-4 * slope.norm());
   const double d_tension = (up.tension(0) - down.tension(0)) / (2 * h);
-  EXPECT_NEAR(std::abs(sensitivity.d_tension(0, 0)), std::abs(d_tension),
-              1e-4 * std::abs(d_tension));
+  EXPECT_NEAR(sensitivity.d_tension(0, 0), d_tension, 1e-4 * std::abs(d_tension));
 }
 
 }  // namespace

@@ -173,10 +173,11 @@ TEST(Chamber, ThatBurstsIsReportedWithThePressureReached) {
   StaticSolver solver(body, "box");
   Equilibrium state = solver.AtRest();
   LoadCase load = state.load;
-  load.actuation.pressures = {100e6};
+  load.actuation.pressures = {2e6};
   const SolveSummary summary = solver.Solve(load, &state);
   EXPECT_EQ(summary.status, SolveSummary::Status::kUnstable) << summary.BriefReport();
-  EXPECT_NEAR(state.load.actuation.pressures[0], summary.reached_share * 100e6, 1);  // Pa
+  EXPECT_GT(summary.reached_share, 0);
+  EXPECT_NEAR(state.load.actuation.pressures[0], summary.reached_share * 2e6, 1);  // Pa
   EXPECT_THAT(summary.Advice(), ::testing::HasSubstr("pressure"));
 }
 
@@ -193,13 +194,22 @@ TEST(Chamber, WithAHoleInItsWallsIsRefused) {
   }
 }
 
-TEST(Chamber, WithARimThatIsFixedIsAccepted) {
-  Body body = HollowBox(1);
+TEST_P(ChamberOfOrder, WithARimThatIsFixedIsAccepted) {
+  Body body = HollowBox(GetParam());
   Eigen::MatrixXi& walls = body.chambers[0].walls;
   const Eigen::VectorXi hole = walls.rightCols(1);
   walls.conservativeResize(Eigen::NoChange, walls.cols() - 1);
   body.fixed_nodes.insert(body.fixed_nodes.end(), hole.begin(), hole.end());
   EXPECT_NO_THROW(body.Check("scene.yaml: body"));
+}
+
+TEST(Chamber, WithARimThatIsFixedAtItsCornersOnlyIsRefused) {
+  Body body = HollowBox(2);
+  Eigen::MatrixXi& walls = body.chambers[0].walls;
+  const Eigen::VectorXi hole = walls.rightCols(1);
+  walls.conservativeResize(Eigen::NoChange, walls.cols() - 1);
+  body.fixed_nodes.insert(body.fixed_nodes.end(), hole.begin(), hole.begin() + 3);
+  EXPECT_THROW(body.Check("scene.yaml: body"), base::InputError);
 }
 
 }  // namespace

@@ -33,11 +33,9 @@ inline mesh::NodalWeights PointOf(const fem::Body& body, const Eigen::Vector3d& 
 // A load of `force` (N) on a point of a body, its cables and chambers (if any) idle.
 inline fem::LoadCase LoadAt(const fem::Body& body, const mesh::NodalWeights& at,
                             const Eigen::Vector3d& force) {
-  fem::LoadCase load;
-  load.forces = Eigen::Matrix3Xd::Zero(3, body.mesh.num_nodes());
+  fem::LoadCase load = fem::OwnWeight(body);
   for (size_t i = 0; i < at.nodes.size(); ++i)
     load.forces.col(at.nodes[i]) += at.weights[i] * force;
-  load.actuation = fem::NoActuation(body);
   return load;
 }
 

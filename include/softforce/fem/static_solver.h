@@ -25,11 +25,15 @@ struct Actuation {
 // Cables without tension, chambers without pressure.
 Actuation NoActuation(const Body& body);
 
-// Everything that acts on the body besides gravity.
+// Everything that acts on the body.
 struct LoadCase {
   Eigen::Matrix3Xd forces;  // 3×N, N; dead loads on the nodes
-  Actuation actuation;
+  Actuation actuation;      // tensions ≥ 0
+  double weight_share = 1;  // of the body's own weight
 };
+
+// The body's own weight and nothing else.
+LoadCase OwnWeight(const Body& body);
 
 // A shape of the body, and what its cables do there.
 struct Equilibrium {
@@ -109,7 +113,7 @@ class StaticSolver {
 
   const Body& body() const;
 
-  // The undeformed body without loads. With gravity, solve before use.
+  // The undeformed body without loads, its own weight included. With gravity, solve before use.
   Equilibrium AtRest() const;
 
   // Moves `state` to the equilibrium under `load`. If it does not converge, `state` is the last
