@@ -162,7 +162,7 @@ SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, Equilibri
     // what the residual had along it: an old factor may take a soft body for a stiff one.
     const double left = std::abs(step.free_du.dot(residual.col(0)));
     const bool small =
-        move <= tolerance && (fresh || move <= 0.01 * tolerance ||
+        move <= tolerance && (fresh || move <= 1e-3 * tolerance ||
                               left <= 0.1 * std::abs(step.free_du.dot(step.free_residual)));
     const bool settled = small || 2 * progress.remaining() <= tolerance;
     if (share == 1 && settled && SlackCablesFit(load, *state, tolerance)) {
@@ -171,7 +171,7 @@ SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, Equilibri
     }
     if (progress.steps() > kFreshSteps) ++wasted;
     const double worth = options.factorisation_worth;
-    factor_valid = share == 1 && inverse.shift() == 0 &&
+    factor_valid = share == 1 && inverse.shift() == 0 && worth > 0 &&
                    wasted + progress.steps_left(tolerance) - kFreshSteps <= worth;
   }
   return StalledStatus();

@@ -48,7 +48,8 @@ struct StaticSolverOptions {
   double tolerance = 1e-7;
   int max_iterations = 60;
   // What a factorisation of the tangent costs, in iterations with the one at hand. The old one is
-  // kept until it has cost as many iterations more than a new one would have.
+  // kept until it has cost as many iterations more than a new one would have. 0: a new tangent for
+  // every iteration, Newton's method of the textbook.
   double factorisation_worth = 10;
   int max_load_halvings = 8;
 
