@@ -215,7 +215,7 @@ void NewtonStep(benchmark::State& state) {
     c.tangent.elements.EnergyAndForces(c.tangent.u, &forces);
     c.tangent.assembler.Assemble(c.tangent.elements, c.tangent.u, {}, {});
     c.tangent.cholesky.Factorise(c.tangent.assembler.matrix());
-    c.tangent.cholesky.SolveInPlace(residual);
+    c.tangent.cholesky.SolveInPlace(&residual);
   });
 }
 

@@ -103,23 +103,23 @@ Eigen::VectorXd Cholesky::SolveRoughly(const Eigen::VectorXd& b) const {
   return state_->rounded.Solve(b);
 }
 
-void Cholesky::SolveInPlace(Eigen::Ref<Eigen::MatrixXd> b) const {
+void Cholesky::SolveInPlace(Eigen::MatrixXd* b) const {
   const OneThread guard;
   cholmod_dense rhs;
   std::memset(&rhs, 0, sizeof(rhs));
-  rhs.nrow = b.rows();
-  rhs.d = b.outerStride();
-  rhs.ncol = b.cols();
+  rhs.nrow = b->rows();
+  rhs.d = b->rows();
+  rhs.ncol = b->cols();
   rhs.nzmax = rhs.d * rhs.ncol;
-  rhs.x = b.data();
+  rhs.x = b->data();
   rhs.xtype = CHOLMOD_REAL;
   rhs.dtype = CHOLMOD_DOUBLE;
   State& s = *state_;
   cholmod_solve2(CHOLMOD_A, s.factor, &rhs, nullptr, &s.solution, nullptr, &s.work_y, &s.work_e,
                  &s.common);
   assert(s.common.status == CHOLMOD_OK);
-  b = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(s.solution->x), b.rows(),
-                                        b.cols());
+  *b = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(s.solution->x), b->rows(),
+                                         b->cols());
 }
 
 }  // namespace softforce::fem

@@ -24,7 +24,7 @@ class Cholesky {
   Eigen::VectorXd SolveRoughly(const Eigen::VectorXd& b) const;
 
   // Replaces the columns of `b` by the solutions.
-  void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> b) const;
+  void SolveInPlace(Eigen::MatrixXd* b) const;
 
  private:
   struct State;

@@ -3,6 +3,6 @@
 #include "fem/factor_kernel.h"
 
 namespace softforce::fem::avx2 {
-#include "fem/element_kernel_body.h"
-#include "fem/factor_kernel_body.h"
+#include "fem/element_kernel.inc"
+#include "fem/factor_kernel.inc"
 }  // namespace softforce::fem::avx2

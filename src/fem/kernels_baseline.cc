@@ -2,6 +2,6 @@
 #include "fem/factor_kernel.h"
 
 namespace softforce::fem::baseline {
-#include "fem/element_kernel_body.h"
-#include "fem/factor_kernel_body.h"
+#include "fem/element_kernel.inc"
+#include "fem/factor_kernel.inc"
 }  // namespace softforce::fem::baseline

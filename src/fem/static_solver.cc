@@ -189,7 +189,7 @@ Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd&
   rhs.leftCols(k) = s.Gather(forces);
   rhs.rightCols(m) = s.Gather(s.CableGradients(state.u)(Eigen::all, held));
   Eigen::MatrixXd solved = rhs;
-  s.inverse.ApplyFactor(solved);
+  s.inverse.ApplyFactor(&solved);
 
   sensitivity.ok = true;
   sensitivity.d_tension = Eigen::MatrixXd::Zero(s.num_cables(), k);

@@ -61,7 +61,7 @@ bool StaticSolver::State::Factorise(const Eigen::Matrix3Xd& u, const Eigen::Vect
   factor_valid = inverse.Factorise(assembler.matrix());
   if (factor_valid && num_cables() > 0) {
     cable_columns = Gather(CableGradients(u));
-    inverse.ApplyFactor(cable_columns);
+    inverse.ApplyFactor(&cable_columns);
   }
   return factor_valid;
 }

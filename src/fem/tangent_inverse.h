@@ -31,7 +31,7 @@ class TangentInverse {
   Eigen::VectorXd Apply(Eigen::VectorXd residual) const;
 
   // The factor alone, for many right-hand sides at once: replaces the columns of `b`.
-  void ApplyFactor(Eigen::Ref<Eigen::MatrixXd> b) const { factor_.SolveInPlace(b); }
+  void ApplyFactor(Eigen::MatrixXd* b) const { factor_.SolveInPlace(b); }
 
  private:
   struct Pair {

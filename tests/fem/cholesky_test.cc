@@ -38,7 +38,7 @@ TEST(Cholesky, KeepsOtherThreadsIdle) {
   const double all = ProcessorSeconds(CLOCK_PROCESS_CPUTIME_ID);
   while (ProcessorSeconds(CLOCK_THREAD_CPUTIME_ID) < own + 0.2) {
     ASSERT_TRUE(cholesky.Factorise(bar.assembler.matrix()));
-    cholesky.SolveInPlace(b);
+    cholesky.SolveInPlace(&b);
   }
   const double own_used = ProcessorSeconds(CLOCK_THREAD_CPUTIME_ID) - own;
   const double all_used = ProcessorSeconds(CLOCK_PROCESS_CPUTIME_ID) - all;
@@ -56,7 +56,7 @@ TEST(Cholesky, SolvesRoughlyWhatItSolvesExactly) {
   const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(bar.assembler.matrix().size(),
                                                          [&] { return 1e-9 * normal(random); });
   Eigen::MatrixXd exact = b;
-  cholesky.SolveInPlace(exact);
+  cholesky.SolveInPlace(&exact);
   // 6e-8 of single precision, times what the condition of a bar (1e7) lets through; 2e-5 seen.
   EXPECT_LT((cholesky.SolveRoughly(b) - exact).norm(), 1e-3 * exact.norm());
   EXPECT_EQ(cholesky.SolveRoughly(0 * b).norm(), 0);
