@@ -1,14 +1,20 @@
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands/commands.h"
 #include "softforce/base/input_error.h"
+#include "softforce/base/pending_file.h"
 #include "softforce/base/quantity.h"
 #include "softforce/mesh/prepare_mesh.h"
 #include "softforce/mesh/surface_groups.h"
+#include "softforce/mesh/write_mesh.h"
 #include "softforce/pipeline/mesh_convergence.h"
 #include "softforce/pipeline/world.h"
 #include "softforce/scene/scene.h"
@@ -21,33 +27,81 @@ using base::Dimension;
 struct MeshArguments {
   std::string in, out;
   std::string unit = "mm", out_unit, size, feature_angle = "40 deg";
-  std::string scene, scene_load, bias_field;
+  std::string scene, load, bias_field;
   mesh::PrepareOptions options;
 };
 
-std::optional<scene::Scene> SceneToAssessWith(const MeshArguments& arguments) {
-  if (!arguments.scene.empty()) return scene::LoadScene(arguments.scene);
-  if (!arguments.scene_load.empty() || !arguments.bias_field.empty()) {
+// What an output file must not replace: the inputs, and the other output.
+void RefuseToReplace(const std::string& option, const std::filesystem::path& file,
+                     const std::vector<std::filesystem::path>& others) {
+  std::error_code ignored;  // a path that cannot be resolved is compared as it is
+  for (const std::filesystem::path& other : others) {
+    if (other.empty() || std::filesystem::weakly_canonical(file, ignored) !=
+                             std::filesystem::weakly_canonical(other, ignored)) {
+      continue;
+    }
+    throw base::InputError(option, fmt::format("{} is a file of this job already", file.string()),
+                           "Choose another name.");
+  }
+}
+
+std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene) {
+  std::vector<std::filesystem::path> files{scene.file, scene.mesh.file, scene.cameras.rig};
+  if (scene.actuation_file) files.push_back(*scene.actuation_file);
+  for (const auto& [camera, source] : scene.cameras.sources) files.emplace_back(source);
+  return files;
+}
+
+// A scene to judge a mesh in.
+struct Assessment {
+  scene::Scene scene;
+  pipeline::MeshConvergenceOptions options;
+};
+
+void CheckBiasField(const MeshArguments& arguments, const scene::Scene& scene) {
+  const std::filesystem::path file = arguments.bias_field;
+  if (file.empty()) return;
+  if (file.extension() != ".vtu") {
+    throw base::InputError("--bias-field",
+                           fmt::format("got \"{}\", must end in .vtu", file.string()),
+                           "It is a file for ParaView.");
+  }
+  std::vector<std::filesystem::path> others = FilesOf(scene);
+  others.insert(others.end(), {arguments.in, arguments.out});
+  RefuseToReplace("--bias-field", file, others);
+  base::CheckCanWrite(file);
+}
+
+// Throws InputError for what cannot be done, before anything is.
+std::optional<Assessment> AssessmentOf(const MeshArguments& arguments) {
+  if (arguments.scene.empty()) {
+    if (arguments.load.empty() && arguments.bias_field.empty()) return std::nullopt;
     throw base::InputError("mesh", "--load and --bias-field need --scene",
                            "Convergence is judged at a scene's markers and forces.");
   }
-  return std::nullopt;
+  Assessment assessment{scene::LoadScene(arguments.scene, scene::SceneFiles::kNone), {}};
+  if (!arguments.load.empty()) {
+    const double load = base::ParseQuantity(arguments.load, Dimension::kForce, 1, "--load")[0];
+    if (!(load > 0)) {
+      throw base::InputError("--load", fmt::format("got {}, must be > 0 N", arguments.load),
+                             "It acts along the candidates' own directions.");
+    }
+    assessment.options.working_load = load;
+  }
+  CheckBiasField(arguments, assessment.scene);
+  return assessment;
 }
 
-// Prints how far the mesh is from converged in a scene.
-void Assess(const MeshArguments& arguments, const scene::Scene& scene, const mesh::TetMesh& mesh) {
-  pipeline::MeshConvergenceOptions options;
-  if (!arguments.scene_load.empty()) {
-    options.working_load =
-        base::ParseQuantity(arguments.scene_load, Dimension::kForce, 1, "--load")[0];
-  }
-  const pipeline::World world = pipeline::BuildWorld(
-      scene, scene.mesh.order == 2 ? mesh::RaiseOrder(mesh) : mesh::LowerOrder(mesh));
-  const pipeline::MeshConvergence found = pipeline::AssessMesh(scene, world, options);
-  fmt::print("\nIn {}:\n{}", arguments.scene, found.FullReport());
-  if (arguments.bias_field.empty()) return;
-  pipeline::WriteCellShares(arguments.bias_field, world, found);
-  fmt::print("\nWritten: {}\n", arguments.bias_field);
+struct Assessed {
+  pipeline::World world;
+  pipeline::MeshConvergence found;
+};
+
+Assessed Assess(const Assessment& assessment, const mesh::TetMesh& mesh) {
+  const scene::Scene& scene = assessment.scene;
+  pipeline::World world = pipeline::BuildWorld(scene, mesh::WithOrder(mesh, scene.mesh.order));
+  pipeline::MeshConvergence found = pipeline::AssessMesh(scene, world, assessment.options);
+  return {std::move(world), std::move(found)};
 }
 
 int Mesh(MeshArguments* arguments) {
@@ -63,12 +117,26 @@ int Mesh(MeshArguments* arguments) {
   }
   options.generate.feature_angle =
       base::ParseQuantity(arguments->feature_angle, Dimension::kAngle, 1, "--feature-angle")[0];
-  const auto scene = SceneToAssessWith(*arguments);  // refused before the mesh is made
+  const std::optional<Assessment> assessment = AssessmentOf(*arguments);
   const mesh::PreparedMesh prepared = mesh::PrepareMesh(arguments->in, arguments->out, options);
   fmt::print("{}", prepared.report.FullReport());
-  if (!arguments->out.empty()) fmt::print("\nWritten: {}\n", arguments->out);
-  if (scene) Assess(*arguments, *scene, prepared.mesh);
-  return 0;
+  std::fflush(stdout);  // what follows may take a minute
+
+  std::optional<Assessed> assessed;
+  if (assessment) {
+    assessed = Assess(*assessment, prepared.mesh);
+    fmt::print("\nIn {}:\n{}", arguments->scene, assessed->found.FullReport());
+  }
+  if (!arguments->out.empty()) {
+    mesh::WriteMesh(arguments->out, prepared.mesh, prepared.out_metres_per_unit);
+    fmt::print("\nWritten: {}\n", arguments->out);
+  }
+  if (!arguments->bias_field.empty()) {
+    pipeline::WriteCellShares(arguments->bias_field, assessed->world, assessed->found);
+    fmt::print("\nWritten: {}\n", arguments->bias_field);
+  }
+  // The load that was asked about has no answer.
+  return !arguments->load.empty() && !assessed->found.working.ok ? 1 : 0;
 }
 
 }  // namespace
@@ -110,14 +178,14 @@ Command AddMesh(CLI::App* program) {
       ->allow_extra_args(false);
   app->add_option(
       "--scene", arguments->scene,
-      "Scene file: also tell how far its markers and forces are from where a finer mesh "
-      "would have them, in per cent, and where to refine");
+      "Scene file: also tell by how much forces found with this mesh would be too large, and "
+      "where to refine it; the scene's videos need not be there yet");
   app->add_option(
-      "--load", arguments->scene_load,
+      "--load", arguments->load,
       "With --scene: load on every candidate at which large displacements are compared, "
       "as \"0.5 N\"; default: what moves a candidate by 5 % of the body's size");
   app->add_option("--bias-field", arguments->bias_field,
-                  "With --scene: .vtu file to write with every cell's share of that error");
+                  "With --scene: .vtu file to write, with every cell's share of that error");
   app->footer(mesh::kSelectorHelp);
   return {app, [arguments] { return Mesh(arguments.get()); }};
 }

@@ -25,6 +25,7 @@ struct RunArguments {
   std::string out;
   std::vector<std::string> cameras;
   std::string frames;
+  std::string correct_mesh = "none";
   bool no_overlay = false;
   pipeline::RunOptions options;
 };
@@ -52,10 +53,20 @@ void ParseFrames(const std::string& text, pipeline::RunOptions* options) {
   options->end_frame = number(text.substr(colon + 1), options->end_frame);
 }
 
+pipeline::MeshAim ParseMeshAim(const std::string& name) {
+  if (name == "none") return pipeline::MeshAim::kGiven;
+  if (name == "refined") return pipeline::MeshAim::kRefined;
+  if (name == "converged") return pipeline::MeshAim::kConverged;
+  throw base::InputError("--correct-mesh",
+                         fmt::format("got \"{}\", expected none, refined or converged", name),
+                         "Write for example: --correct-mesh refined");
+}
+
 int Run(RunArguments* arguments) {
   pipeline::RunOptions& options = arguments->options;
   options.out = arguments->out;
   options.overlay = !arguments->no_overlay;
+  options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
   for (const std::string& camera : arguments->cameras) {
     const size_t equals = camera.find('=');
@@ -100,13 +111,9 @@ Command AddRun(CLI::App* program) {
          "(standard deviation)")
       ->capture_default_str();
   app->add_option(
-         "--correct-mesh", arguments->options.mesh_aim,
+         "--correct-mesh", arguments->correct_mesh,
          "Correct the mesh's own error as far as the once refined mesh shows it (refined), "
          "or to the estimated limit (converged); model errors shrink with it")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, pipeline::MeshAim>{{"none", pipeline::MeshAim::kGiven},
-                                                   {"refined", pipeline::MeshAim::kRefined},
-                                                   {"converged", pipeline::MeshAim::kConverged}}))
       ->option_text("none|refined|converged [none]");
   app->add_option("--overlay-width", arguments->options.overlay_width, "Width of overlay.mp4, px")
       ->capture_default_str();

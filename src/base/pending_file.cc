@@ -1,6 +1,7 @@
 #include "softforce/base/pending_file.h"
 
 #include <cassert>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -38,6 +39,16 @@ void PendingFile::Commit() {
         "Check that its folder exists, may be written to, and has room.");
   }
   owns_ = false;
+}
+
+void CheckCanWrite(const fs::path& path) {
+  std::error_code ignored;  // what cannot be looked at cannot be opened either
+  const bool is_folder = fs::is_directory(path, ignored);
+  const PendingFile trial(path);  // removed when this ends
+  if (!is_folder && std::ofstream(trial.temporary())) return;
+  throw InputError(path.string(),
+                   is_folder ? "cannot be written: it is a folder" : "cannot be written",
+                   "Check that its folder exists and may be written to.");
 }
 
 }  // namespace softforce::base

@@ -3,22 +3,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "softforce/mesh/disjoint_sets.h"
 #include "softforce/mesh/surface.h"
 
 namespace softforce::mesh {
-
-// Sets of numbers 0 … count − 1 that grow together.
-class DisjointSets {
- public:
-  explicit DisjointSets(int count);
-  void Join(int a, int b);
-  // The set of each number: sets are counted from 0 in the order of their least members.
-  std::vector<int> Numbers();
-
- private:
-  int Root(int a);
-  std::vector<int> parent_;
-};
 
 // Two triangles of the surface that share an edge. Edges of more than two triangles, where parts of
 // the surface only touch, are left out.

@@ -10,6 +10,7 @@
 #include "mesh/connectivity.h"
 #include "mesh/jacobian.h"
 #include "mesh/mesh_warnings.h"
+#include "mesh/overlap.h"
 #include "mesh/point_grid.h"
 #include "mesh/tetrahedron.h"
 #include "mesh/thickness.h"
@@ -130,11 +131,6 @@ void FindCoincidentNodes(const TetMesh& mesh, MeshReport& report) {
 
 using Corners = std::array<int, 3>;
 
-Corners Sorted(Corners corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
 // Triangles of the surface by their corners, with those corners turned to face outward.
 std::map<Corners, Corners> OutwardTriangles(const Surface& surface) {
   std::map<Corners, Corners> outward;
@@ -207,6 +203,9 @@ MeshReport ExamineMesh(const TetMesh& mesh, double solid_volume) {
   ExamineParts(mesh, report);
   FindCoincidentNodes(mesh, report);
   ExamineSurface(mesh, report);
+  const Overlap overlap = FindOverlap(mesh);
+  report.overlapping_cells = overlap.cells;
+  report.overlapping_at = overlap.at;
   report.warnings = WarningsOf(report);
   return report;
 }

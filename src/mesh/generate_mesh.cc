@@ -12,6 +12,7 @@
 #include "mesh/gmsh_model.h"
 #include "mesh/gmsh_session.h"
 #include "mesh/isolated.h"
+#include "mesh/tetrahedron.h"
 #include "softforce/base/input_error.h"
 
 namespace softforce::mesh {
@@ -19,15 +20,37 @@ namespace {
 
 using base::InputError;
 
+// Their numbers in the script or file, with their names where they have one.
+std::vector<std::string> UngroupedVolumes() {
+  std::vector<std::string> volumes;
+  gmsh::vectorpair solids;
+  gmsh::model::getEntities(solids, 3);
+  for (const auto& [dimension, tag] : solids) {
+    std::vector<int> groups;
+    gmsh::model::getPhysicalGroupsForEntity(dimension, tag, groups);
+    if (!groups.empty()) continue;
+    std::string name;
+    gmsh::model::getEntityName(dimension, tag, name);
+    volumes.push_back(name.empty() ? fmt::format("{}", tag) : fmt::format("{} \"{}\"", tag, name));
+  }
+  return volumes;
+}
+
 // Gmsh meshes the volumes without a physical group as well; its own program leaves those out of the
 // file, and so do we. If no volume is in a group, all stay.
-void DropUngroupedVolumes(TetMesh& mesh) {
+void DropUngroupedVolumes(GeneratedMesh& generated) {
+  TetMesh& mesh = generated.mesh;
   const auto unnamed = std::find(mesh.region_names.begin(), mesh.region_names.end(), "");
   if (unnamed == mesh.region_names.end() || mesh.region_names.size() == 1) return;
   const int dropped = static_cast<int>(unnamed - mesh.region_names.begin());
   int kept = 0;
+  double volume = 0, dropped_volume = 0;
   for (int e = 0; e < mesh.num_elements(); ++e) {
     const int region = mesh.region[e];
+    Eigen::Matrix<double, 3, 4> corners;
+    for (int i = 0; i < 4; ++i) corners.col(i) = mesh.nodes.col(mesh.elements(i, e));
+    volume += VolumeOf(corners);
+    if (region == dropped) dropped_volume += VolumeOf(corners);
     if (region == dropped) continue;
     mesh.elements.col(kept) = mesh.elements.col(e).eval();
     mesh.region[kept++] = region - (region > dropped);
@@ -35,6 +58,10 @@ void DropUngroupedVolumes(TetMesh& mesh) {
   mesh.elements.conservativeResize(Eigen::NoChange, kept);
   mesh.region.resize(kept);
   mesh.region_names.erase(unnamed);
+  generated.warnings.push_back(fmt::format(
+      "left out, as in no physical group while others are: volume {}, {:.1f} % of the whole. Add "
+      "it to a Physical Volume if it belongs to the body.",
+      fmt::join(UngroupedVolumes(), ", "), 100 * dropped_volume / volume));
 }
 
 // Gmsh's optimiser leaves nodes behind that no element uses; a script may mesh surfaces of no
@@ -117,7 +144,7 @@ GeneratedMesh Generate(const std::filesystem::path& path, double metres_per_unit
 
   GeneratedMesh generated;
   generated.mesh = MeshOfGmshModel(where);
-  DropUngroupedVolumes(generated.mesh);
+  DropUngroupedVolumes(generated);
   DropUnusedNodes(generated.mesh);
   if (generated.mesh.num_elements() == 0) {
     throw InputError(where, "Gmsh fills it with no tetrahedra", "Take a smaller --size.");
@@ -141,9 +168,10 @@ void GenerateOptions::Check() const {
                      "Write for example: --size \"5 mm\"");
   }
   if (!(feature_angle > 0 && feature_angle < 3.1415)) {
-    throw InputError("--feature-angle",
-                     fmt::format("got {} deg, must be within 0 and 180", feature_angle / 0.0174533),
-                     "Write for example: --feature-angle \"40 deg\"");
+    throw InputError(
+        "--feature-angle",
+        fmt::format("got {:.4g} deg, must be within 0 and 180 deg", feature_angle * 180 / EIGEN_PI),
+        "Write for example: --feature-angle \"40 deg\"");
   }
   if (optimise < 0 || optimise > 2) {
     throw InputError("--optimise", fmt::format("got {}, must be 0, 1 or 2", optimise));

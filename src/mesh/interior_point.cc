@@ -3,16 +3,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "softforce/mesh/tet_shapes.h"
+
 namespace softforce::mesh {
 namespace {
 
 NodalWeights ShapeFunctionsOf(const TetMesh& mesh, int element, const Eigen::Vector4d& b) {
-  Eigen::VectorXd value = b;
-  if (mesh.order() == 2) {
-    value.resize(10);
-    for (int i = 0; i < 4; ++i) value(i) = b(i) * (2 * b(i) - 1);
-    for (int e = 0; e < 6; ++e) value(4 + e) = 4 * b(kEdges[e][0]) * b(kEdges[e][1]);
-  }
+  const Eigen::VectorXd value = TetShapes(mesh.order(), b);
   std::vector<std::pair<int, double>> sorted;
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     sorted.emplace_back(mesh.elements(i, element), value(i));

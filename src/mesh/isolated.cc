@@ -67,6 +67,8 @@ class Channel {
 void Put(const GeneratedMesh& generated, Channel& channel) {
   const TetMesh& mesh = generated.mesh;
   channel.Put(&generated.solid_volume, 1);
+  channel.Put(static_cast<std::int64_t>(generated.warnings.size()));
+  for (const std::string& warning : generated.warnings) channel.Put(warning);
   channel.Put(mesh.num_nodes());
   channel.Put(mesh.nodes.data(), mesh.nodes.size());
   channel.Put(mesh.elements.rows());
@@ -87,6 +89,8 @@ GeneratedMesh Get(Channel& channel) {
   GeneratedMesh generated;
   TetMesh& mesh = generated.mesh;
   channel.Get(&generated.solid_volume, 1);
+  generated.warnings.resize(channel.Get());
+  for (std::string& warning : generated.warnings) warning = channel.GetText();
   mesh.nodes.resize(3, channel.Get());
   channel.Get(mesh.nodes.data(), mesh.nodes.size());
   const std::int64_t rows = channel.Get();

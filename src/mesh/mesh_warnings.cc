@@ -15,6 +15,13 @@ void WarnOfConnection(const MeshReport& report, std::vector<std::string>& warnin
         "the finished mesh).",
         report.coincident_nodes, InMillimetres(report.coincident_at, 2)));
   }
+  if (report.overlapping_cells > 0) {
+    warnings.push_back(fmt::format(
+        "parts of the body fill the same space: {} cells lie within those of another part, the "
+        "first at {}. Their stiffness and volume count twice. Unite the parts before meshing (in "
+        "Gmsh: BooleanUnion or BooleanFragments).",
+        report.overlapping_cells, InMillimetres(report.overlapping_at, 2)));
+  }
   if (report.parts > 1) {
     warnings.push_back(fmt::format(
         "the body is in {} parts that share no node: each must be held by itself. If they are "

@@ -4,6 +4,7 @@
 
 #include <cassert>
 
+#include "mesh/generate.h"
 #include "mesh/readers.h"
 #include "softforce/base/input_error.h"
 
@@ -13,7 +14,7 @@ TetMesh ReadMesh(const std::filesystem::path& path, double metres_per_unit) {
   assert(metres_per_unit > 0);
   using base::InputError;
   const std::string where = path.string();
-  const std::string extension = path.extension().string();
+  const std::string extension = LowerExtension(path);
   if (extension != ".msh" && extension != ".vtk" && extension != ".vtu") {
     throw InputError(
         where, fmt::format("its extension is \"{}\", must be .msh (Gmsh), .vtk or .vtu", extension),

@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "softforce/mesh/tet_shapes.h"
+
 namespace softforce::mesh {
 namespace {
 
@@ -25,15 +27,7 @@ const Eigen::Matrix<double, 4, 10>& NodeBarycentrics() {
 
 // The point of a 10-node cell at barycentric coordinates.
 Eigen::Vector3d PointIn(const TetMesh& mesh, int element, const Eigen::Vector4d& at) {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 4; ++i) {
-    point += at(i) * (2 * at(i) - 1) * mesh.nodes.col(mesh.elements(i, element));
-  }
-  for (int i = 0; i < 6; ++i) {
-    point +=
-        4 * at(kEdges[i][0]) * at(kEdges[i][1]) * mesh.nodes.col(mesh.elements(4 + i, element));
-  }
-  return point;
+  return mesh.nodes(Eigen::all, mesh.elements.col(element)) * TetShapes(2, at);
 }
 
 // The same part with its corners in positive order.

@@ -52,7 +52,11 @@ struct Term {
     return Eigen::Vector3d::Map(numbers.data());
   }
   double Angle(int argument) const {
-    return base::ParseQuantity(arguments[argument], Dimension::kAngle, 1, where)[0];
+    const double angle = base::ParseQuantity(arguments[argument], Dimension::kAngle, 1, where)[0];
+    if (angle >= 0 && angle <= EIGEN_PI) return angle;
+    throw InputError(
+        where, fmt::format("the angle is {}, must be within 0 and 180 deg", arguments[argument]),
+        "For example: 30 deg");
   }
   Eigen::Vector3d Direction(int argument) const {
     const Eigen::Vector3d direction = Vector(argument, Dimension::kNumber);

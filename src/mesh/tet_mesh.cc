@@ -1,10 +1,16 @@
 #include "softforce/mesh/tet_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <unordered_map>
 
 namespace softforce::mesh {
+
+std::array<int, 3> Sorted(std::array<int, 3> corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
 
 TetMesh RaiseOrder(const TetMesh& mesh) {
   if (mesh.order() == 2) return mesh;
@@ -63,6 +69,11 @@ TetMesh LowerOrder(const TetMesh& mesh) {
     }
   }
   return lowered;
+}
+
+TetMesh WithOrder(const TetMesh& mesh, int order) {
+  assert(order == 1 || order == 2);
+  return order == 2 ? RaiseOrder(mesh) : LowerOrder(mesh);
 }
 
 }  // namespace softforce::mesh

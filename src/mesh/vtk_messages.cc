@@ -53,6 +53,11 @@ std::string VtkMessages::FirstProblem() const {
   if (address != std::string::npos) text.erase(0, address + 3);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
+  // It may quote the file, which may be anything.
+  constexpr std::size_t kLongest = 200;
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + " …";
   return text;
 }
 

@@ -26,11 +26,6 @@ struct SurfacePart {
   std::vector<Triangle> triangles;
 };
 
-Triangle Sorted(Triangle triangle) {
-  std::sort(triangle.begin(), triangle.end());
-  return triangle;
-}
-
 // Gmsh wants each triangle once, so overlapping groups share parts: one part per combination.
 std::vector<SurfacePart> SplitIntoParts(const TetMesh& mesh) {
   std::map<Triangle, std::set<int>> groups_of;

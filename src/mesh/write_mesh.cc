@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "mesh/generate.h"
 #include "mesh/writers.h"
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/write_vtu.h"
@@ -25,7 +26,7 @@ double InUnits(double x, double metres_per_unit) {
 }  // namespace
 
 void CheckCanWriteMesh(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = LowerExtension(path);
   if (extension == ".msh" || extension == ".vtu" || extension == ".vtk") return;
   throw base::InputError(
       path.string(),
@@ -33,16 +34,16 @@ void CheckCanWriteMesh(const std::filesystem::path& path) {
       "Only .msh keeps surface groups and the names of regions.");
 }
 
-bool KeepsNames(const std::filesystem::path& path) { return path.extension() == ".msh"; }
+bool KeepsNames(const std::filesystem::path& path) { return LowerExtension(path) == ".msh"; }
 
 void WriteMesh(const std::filesystem::path& path, const TetMesh& mesh, double metres_per_unit) {
   assert(metres_per_unit > 0);
   CheckCanWriteMesh(path);
   TetMesh scaled = mesh;
   scaled.nodes = mesh.nodes.unaryExpr([&](double x) { return InUnits(x, metres_per_unit); });
-  if (path.extension() == ".msh") {
+  if (LowerExtension(path) == ".msh") {
     WriteGmsh(path, scaled);
-  } else if (path.extension() == ".vtu") {
+  } else if (LowerExtension(path) == ".vtu") {
     WriteVtu(path, scaled);
   } else {
     WriteLegacyVtk(path, scaled);

@@ -3,29 +3,10 @@
 #include <Eigen/LU>
 #include <array>
 
+#include "softforce/mesh/tet_shapes.h"
+
 namespace softforce::pipeline {
 namespace {
-
-// Shape functions of 4 or 10 nodes at barycentric coordinates, and their derivatives by them.
-Eigen::VectorXd Shapes(const Eigen::Vector4d& at, int num_nodes) {
-  if (num_nodes == 4) return at;
-  Eigen::VectorXd shapes(10);
-  for (int i = 0; i < 4; ++i) shapes(i) = at(i) * (2 * at(i) - 1);
-  for (int i = 0; i < 6; ++i) shapes(4 + i) = 4 * at(mesh::kEdges[i][0]) * at(mesh::kEdges[i][1]);
-  return shapes;
-}
-
-Eigen::MatrixX4d ShapeDerivatives(const Eigen::Vector4d& at, int num_nodes) {
-  if (num_nodes == 4) return Eigen::Matrix4d::Identity();
-  Eigen::MatrixX4d derivatives = Eigen::MatrixX4d::Zero(10, 4);
-  for (int i = 0; i < 4; ++i) derivatives(i, i) = 4 * at(i) - 1;
-  for (int i = 0; i < 6; ++i) {
-    const auto [a, b] = mesh::kEdges[i];
-    derivatives(4 + i, a) = 4 * at(b);
-    derivatives(4 + i, b) = 4 * at(a);
-  }
-  return derivatives;
-}
 
 // From barycentric coordinates to three independent ones: the first is 1 less the others.
 const Eigen::Matrix<double, 4, 3> kReduce =
@@ -64,7 +45,7 @@ std::vector<Eigen::Matrix3Xd> OnFineCells(const mesh::TetMesh& coarse, const Eig
       const Eigen::Vector4d at =
           i < 4 ? corners[i]
                 : (corners[mesh::kEdges[i - 4][0]] + corners[mesh::kEdges[i - 4][1]]) / 2;
-      of_part.col(i) = of_parent * Shapes(at, num_nodes);
+      of_part.col(i) = of_parent * mesh::TetShapes(coarse.order(), at);
     }
     cells.push_back(of_part);
   }
@@ -81,7 +62,8 @@ std::vector<double> CellWork(const fem::Body& body, const std::vector<Eigen::Mat
     const fem::Material& material = body.materials[body.mesh.region[e]];
     const Eigen::Matrix3Xd X = body.mesh.nodes(Eigen::all, body.mesh.elements.col(element));
     for (const Eigen::Vector4d& at : points) {
-      const Eigen::MatrixX3d derivatives = ShapeDerivatives(at, num_nodes) * kReduce;
+      const Eigen::MatrixX3d derivatives =
+          mesh::TetShapeDerivatives(body.mesh.order(), at) * kReduce;
       const Eigen::Matrix3d J = X * derivatives;
       const Eigen::MatrixX3d by_place = derivatives * J.inverse();
       const Eigen::Matrix3d strain_a = Symmetric(a[e] * by_place);

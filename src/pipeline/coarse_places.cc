@@ -5,17 +5,14 @@
 #include <map>
 #include <numeric>
 
+#include "softforce/mesh/disjoint_sets.h"
+
 namespace softforce::pipeline {
 namespace {
 
 constexpr double kReportedShare = 0.8;  // of the bias lies in the cells that are reported
 constexpr double kSmallestPlace = 0.01;
 constexpr double kLeft = 0.1;  // of the error, with the wanted size
-
-int Root(std::vector<int>* parent, int i) {
-  while ((*parent)[i] != i) i = (*parent)[i] = (*parent)[(*parent)[i]];
-  return i;
-}
 
 Eigen::Vector3d Centre(const mesh::TetMesh& mesh, int e) {
   return (mesh.nodes.col(mesh.elements(0, e)) + mesh.nodes.col(mesh.elements(1, e)) +
@@ -43,26 +40,23 @@ std::vector<std::vector<int>> Groups(const mesh::TetMesh& mesh, const Eigen::Vec
     chosen.push_back(e);
     sum += share(e);
   }
-  std::vector<int> parent(mesh.num_nodes());
-  std::iota(parent.begin(), parent.end(), 0);
+  mesh::DisjointSets joined(mesh.num_nodes());
   for (const int e : chosen) {
-    for (int i = 1; i < 4; ++i) {
-      parent[Root(&parent, mesh.elements(i, e))] = Root(&parent, mesh.elements(0, e));
-    }
+    for (int i = 1; i < 4; ++i) joined.Join(mesh.elements(0, e), mesh.elements(i, e));
   }
+  const std::vector<int> set = joined.Numbers();
   std::map<int, std::vector<int>> groups;
-  for (const int e : chosen) groups[Root(&parent, mesh.elements(0, e))].push_back(e);
+  for (const int e : chosen) groups[set[mesh.elements(0, e)]].push_back(e);
   std::vector<std::vector<int>> list;
-  for (auto& [root, cells] : groups) list.push_back(std::move(cells));
+  for (auto& [number, cells] : groups) list.push_back(std::move(cells));
   return list;
 }
 
 }  // namespace
 
 std::vector<CoarsePlace> CoarsePlaces(const mesh::TetMesh& mesh, const Eigen::VectorXd& share,
-                                      double ratio) {
-  // size^p with 2^(−p) = ratio; singular edges where the ratio is not known.
-  const double p = -std::log2(std::clamp(std::isfinite(ratio) ? ratio : 0.35, 0.06, 0.7));
+                                      double left_after_halving) {
+  const double p = -std::log2(left_after_halving);  // the error falls with size^p
   std::vector<CoarsePlace> places;
   for (const std::vector<int>& cells : Groups(mesh, share)) {
     CoarsePlace place{Eigen::Vector3d::Zero(), 0, 0, 0, 0};

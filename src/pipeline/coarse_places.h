@@ -5,8 +5,8 @@
 namespace softforce::pipeline {
 
 // The places where the cells lie that have most of the bias (`share` of each cell, sum 1), by
-// cells that hang together. `ratio`: what is left of the error when the size is halved.
+// cells that hang together. `left_after_halving`: of the error, when the size is halved.
 std::vector<CoarsePlace> CoarsePlaces(const mesh::TetMesh& mesh, const Eigen::VectorXd& share,
-                                      double ratio);
+                                      double left_after_halving);
 
 }  // namespace softforce::pipeline

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <set>
 
@@ -17,11 +16,6 @@ std::string GroupNames(const mesh::TetMesh& mesh) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::array<int, 3> Sorted(std::array<int, 3> corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
 }  // namespace
 
 std::vector<int> GroupTriangles(const std::string& group, const mesh::TetMesh& mesh,
@@ -34,12 +28,12 @@ std::vector<int> GroupTriangles(const std::string& group, const mesh::TetMesh& m
         "Name one with: softforce mesh --help");
   }
   std::set<std::array<int, 3>> wanted;
-  for (const std::array<int, 3>& corners : found->second) wanted.insert(Sorted(corners));
+  for (const std::array<int, 3>& corners : found->second) wanted.insert(mesh::Sorted(corners));
   std::vector<int> triangles;
   for (int t = 0; t < surface.num_triangles(); ++t) {
     const std::array<int, 3> corners{surface.triangles(0, t), surface.triangles(1, t),
                                      surface.triangles(2, t)};
-    if (wanted.count(Sorted(corners)) > 0) triangles.push_back(t);
+    if (wanted.count(mesh::Sorted(corners)) > 0) triangles.push_back(t);
   }
   return triangles;
 }

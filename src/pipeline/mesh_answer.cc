@@ -6,21 +6,6 @@
 namespace softforce::pipeline {
 namespace {
 
-Eigen::MatrixXd UnitForces(const World& world) {
-  Eigen::Index components = 0;
-  for (const estimation::ForceSite& site : world.sites) components += site.directions.cols();
-  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(3 * world.mesh().num_nodes(), components);
-  Eigen::Index first = 0;
-  for (const estimation::ForceSite& site : world.sites) {
-    for (size_t i = 0; i < site.at.nodes.size(); ++i) {
-      forces.block(3 * site.at.nodes[i], first, 3, site.directions.cols()) =
-          site.at.weights[i] * site.directions;
-    }
-    first += site.directions.cols();
-  }
-  return forces;
-}
-
 // Σ_m (weights of marker m) · aim_m / |aim|², for each component.
 Eigen::MatrixXd DualForces(const World& world, const Eigen::MatrixXd& aim) {
   Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(3 * world.mesh().num_nodes(), aim.cols());
@@ -35,18 +20,32 @@ Eigen::MatrixXd DualForces(const World& world, const Eigen::MatrixXd& aim) {
 }
 
 // How a field changed from mesh to mesh, for each fine cell.
-std::vector<Eigen::Matrix3Xd> Change(const World& coarse, const Eigen::VectorXd& before,
-                                     const World& fine, const Eigen::VectorXd& after,
+std::vector<Eigen::Matrix3Xd> Change(const mesh::TetMesh& coarse, const Eigen::VectorXd& before,
+                                     const mesh::TetMesh& fine, const Eigen::VectorXd& after,
                                      const mesh::Refinement& refinement) {
-  std::vector<Eigen::Matrix3Xd> cells =
-      OnCells(fine.mesh(), after.reshaped(3, fine.mesh().num_nodes()));
+  std::vector<Eigen::Matrix3Xd> cells = OnCells(fine, after.reshaped(3, fine.num_nodes()));
   const std::vector<Eigen::Matrix3Xd> old =
-      OnFineCells(coarse.mesh(), before.reshaped(3, coarse.mesh().num_nodes()), refinement);
+      OnFineCells(coarse, before.reshaped(3, coarse.num_nodes()), refinement);
   for (size_t e = 0; e < cells.size(); ++e) cells[e] -= old[e];
   return cells;
 }
 
 }  // namespace
+
+Eigen::MatrixXd UnitForces(const World& world) {
+  Eigen::Index components = 0;
+  for (const estimation::ForceSite& site : world.sites) components += site.directions.cols();
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(3 * world.mesh().num_nodes(), components);
+  Eigen::Index first = 0;
+  for (const estimation::ForceSite& site : world.sites) {
+    for (size_t i = 0; i < site.at.nodes.size(); ++i) {
+      forces.block(3 * site.at.nodes[i], first, 3, site.directions.cols()) =
+          site.at.weights[i] * site.directions;
+    }
+    first += site.directions.cols();
+  }
+  return forces;
+}
 
 Eigen::VectorXd AtMarkers(const World& world, const Eigen::Matrix3Xd& u) {
   Eigen::VectorXd markers(3 * static_cast<Eigen::Index>(world.markers.size()));
@@ -84,15 +83,14 @@ MeshAnswer AnswerOf(const World& world, const Eigen::MatrixXd& aim) {
   return answer;
 }
 
-std::vector<double> ChangeOfCells(const World& coarse, const MeshAnswer& coarse_answer,
-                                  const World& fine, const MeshAnswer& fine_answer,
+std::vector<double> ChangeOfCells(const mesh::TetMesh& coarse, const MeshAnswer& coarse_answer,
+                                  const fem::Body& fine, const MeshAnswer& fine_answer,
                                   const mesh::Refinement& refinement) {
   std::vector<double> change(refinement.parent.size(), 0);
   for (Eigen::Index c = 0; c < fine_answer.du.cols(); ++c) {
     const std::vector<double> work = CellWork(
-        fine.solver->body(),
-        Change(coarse, coarse_answer.du.col(c), fine, fine_answer.du.col(c), refinement),
-        Change(coarse, coarse_answer.dual.col(c), fine, fine_answer.dual.col(c), refinement));
+        fine, Change(coarse, coarse_answer.du.col(c), fine.mesh, fine_answer.du.col(c), refinement),
+        Change(coarse, coarse_answer.dual.col(c), fine.mesh, fine_answer.dual.col(c), refinement));
     for (size_t e = 0; e < work.size(); ++e) change[e] += work[e];
   }
   return change;

@@ -20,6 +20,9 @@ struct MeshAnswer {
   Eigen::MatrixXd dual;
 };
 
+// A newton on each component of the candidates, 3N×k.
+Eigen::MatrixXd UnitForces(const World& world);
+
 // `aim`: the given mesh's `markers`, against which BiasOf measures; empty if this is it. Throws
 // InputError if the body has no stable equilibrium under its weight.
 MeshAnswer AnswerOf(const World& world, const Eigen::MatrixXd& aim = {});
@@ -33,8 +36,8 @@ double BiasOf(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to);
 // What a refinement changed in each fine cell. The sum over the cells is the change of the bias:
 // with a(·,·) the elastic work, 〈aim, ΔW〉/|aim|² = Σ_c a(Δu_c, Δz_c), z being the dual solution,
 // since the finite element errors Δu and Δz are orthogonal to the coarse mesh's fields.
-std::vector<double> ChangeOfCells(const World& coarse, const MeshAnswer& coarse_answer,
-                                  const World& fine, const MeshAnswer& fine_answer,
+std::vector<double> ChangeOfCells(const mesh::TetMesh& coarse, const MeshAnswer& coarse_answer,
+                                  const fem::Body& fine, const MeshAnswer& fine_answer,
                                   const mesh::Refinement& refinement);
 
 }  // namespace softforce::pipeline

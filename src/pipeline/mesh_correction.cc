@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "softforce/base/input_error.h"
+
 namespace softforce::pipeline {
 namespace {
 
@@ -12,6 +14,12 @@ constexpr double kLeastModelError = 0.1;  // of what is allowed without correcti
 }  // namespace
 
 MeshCorrection CorrectMesh(const scene::Scene& scene, MeshAim aim, bool show_progress) {
+  if (aim == MeshAim::kConverged && scene.mesh.order == 1) {
+    throw base::InputError(
+        scene.file.string() + ": body: mesh: order",
+        "is 1: 4-node cells lock, and how far they are from the limit cannot be told",
+        "Set 'order: 2'.");
+  }
   MeshConvergenceOptions options;
   options.working_deflection = -1;
   options.show_progress = show_progress;
@@ -31,8 +39,9 @@ MeshCorrection CorrectMesh(const scene::Scene& scene, MeshAim aim, bool show_pro
   for (auto& [region, material] : correction.scene.materials) {
     material.youngs_modulus *= correction.modulus_factor;
   }
-  const double uncorrected =
-      aim == MeshAim::kRefined ? found.overall.converged - found.overall.refined : found.uncertain;
+  const double uncorrected = aim == MeshAim::kRefined
+                                 ? found.overall.converged - found.overall.refined
+                                 : found.overall.uncertain;
   const double share = std::abs(uncorrected / found.overall.converged);
   correction.model_error_factor =
       std::isfinite(share) ? std::clamp(share, kLeastModelError, 1.0) : 1;

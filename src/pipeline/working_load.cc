@@ -1,5 +1,7 @@
 #include "pipeline/working_load.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +27,7 @@ Eigen::VectorXd LoadPattern(const World& world, const MeshAnswer& answer) {
 }
 
 struct Shape {
-  bool ok = false;
+  fem::SolveSummary summary;
   fem::Equilibrium state;
   Eigen::Matrix3Xd u;  // 3×N, m; by the load, without the body's weight
 };
@@ -35,12 +37,19 @@ Shape Load(const World& world, const Eigen::VectorXd& forces) {
   Shape shape;
   shape.state = world.solver->AtRest();
   fem::LoadCase load{Eigen::Matrix3Xd::Zero(3, num_nodes), fem::NoActuation(world.solver->body())};
-  shape.ok = world.solver->Solve(load, &shape.state).ok();
+  shape.summary = world.solver->Solve(load, &shape.state);
+  if (!shape.summary.ok()) return shape;
   const Eigen::Matrix3Xd at_rest = shape.state.u;
   load.forces = forces.reshaped(3, num_nodes);
-  shape.ok = shape.ok && world.solver->Solve(load, &shape.state).ok();
+  shape.summary = world.solver->Solve(load, &shape.state);
   shape.u = shape.state.u - at_rest;
   return shape;
+}
+
+std::string NoEquilibrium(double load, const char* mesh, const fem::SolveSummary& summary) {
+  return fmt::format(
+      "no equilibrium was found with {:.3g} N on every candidate on the {} mesh: {}. {}", load,
+      mesh, summary.BriefReport(), summary.Advice());
 }
 
 double LargestDeflection(const World& world, const Eigen::Matrix3Xd& u) {
@@ -64,7 +73,7 @@ Shape FindLoad(const World& world, const Eigen::VectorXd& forces,
       options.working_deflection * (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).maxCoeff();
   *load = wanted / LargestDeflection(world, linear);
   Shape shape = Load(world, *load * forces);
-  for (int i = 1; i < kMaxLoadSearches && shape.ok; ++i) {
+  for (int i = 1; i < kMaxLoadSearches && shape.summary.ok(); ++i) {
     const double share = LargestDeflection(world, shape.u) / wanted;
     if (std::abs(share - 1) < kLoadTolerance) break;
     *load /= share;
@@ -76,18 +85,30 @@ Shape FindLoad(const World& world, const Eigen::VectorXd& forces,
 }  // namespace
 
 WorkingMeshBias CompareAtWork(const World& given, const MeshAnswer& given_answer,
-                              const World& local, const MeshAnswer& local_answer,
+                              const World& local, const Eigen::MatrixXd& local_markers,
                               const Eigen::MatrixXd& refined, const Eigen::MatrixXd& converged,
                               const MeshConvergenceOptions& options) {
   WorkingMeshBias bias;
   const Eigen::VectorXd pattern = LoadPattern(given, given_answer);
   const Eigen::Matrix3Xd linear = (given_answer.du * pattern).reshaped(3, given.mesh().num_nodes());
   const Shape coarse = FindLoad(given, given_answer.forces * pattern, options, linear, &bias.load);
-  if (!coarse.ok) return bias;
-  const Shape fine = Load(local, bias.load * (local_answer.forces * pattern));
+  if (!coarse.summary.ok()) {
+    bias.problem = NoEquilibrium(bias.load, "given", coarse.summary);
+    return bias;
+  }
+  const Shape fine = Load(local, bias.load * (UnitForces(local) * pattern));
+  if (!fine.summary.ok()) {
+    bias.problem = NoEquilibrium(bias.load, "finer", fine.summary);
+    return bias;
+  }
   const fem::Sensitivity tangent =
       given.solver->Solve(coarse.state, given_answer.forces * pattern, 0);
-  if (!fine.ok || !tangent.ok) return bias;
+  if (!tangent.ok) {
+    bias.problem = fmt::format(
+        "with {:.3g} N on every candidate the body is about to buckle. Take a smaller load.",
+        bias.load);
+    return bias;
+  }
 
   bias.deflection = LargestDeflection(given, coarse.u);
   const Eigen::VectorXd u = AtMarkers(given, coarse.u);
@@ -99,12 +120,13 @@ WorkingMeshBias CompareAtWork(const World& given, const MeshAnswer& given_answer
   const double force = per_newton.dot(missing) / per_newton.squaredNorm() / bias.load;
 
   const Eigen::VectorXd at_rest = given_answer.markers * pattern;
-  const double local_at_rest = BiasOf(at_rest, local_answer.markers * pattern);
+  const double local_at_rest = BiasOf(at_rest, local_markers * pattern);
   const double to_refined = BiasOf(at_rest, refined * pattern) / local_at_rest;
   const double to_converged = BiasOf(at_rest, converged * pattern) / local_at_rest;
   bias.displacement = {to_refined * displacement, to_converged * displacement};
   bias.force = {to_refined * force, to_converged * force};
-  bias.ok = std::isfinite(bias.force.converged);
+  bias.ok = std::isfinite(bias.force.refined);
+  if (!bias.ok) bias.problem = "the meshes move alike, so that their difference cannot be scaled.";
   return bias;
 }
 

@@ -17,7 +17,7 @@ namespace {
 mesh::TetMesh LoadMesh(const scene::MeshFile& file) {
   mesh::TetMesh mesh = mesh::ReadMesh(file.file, file.metres_per_unit);
   mesh::CheckMesh(mesh, file.file.string());
-  return file.order == 2 ? mesh::RaiseOrder(mesh) : mesh::LowerOrder(mesh);
+  return mesh::WithOrder(mesh, file.order);
 }
 
 std::vector<fem::Material> MaterialsOf(const scene::Scene& scene, const mesh::TetMesh& mesh) {

@@ -9,9 +9,9 @@ namespace {
 
 using base::Dimension;
 
-MeshFile ReadMesh(YamlMap& map) {
+MeshFile ReadMesh(YamlMap& map, SceneFiles files) {
   MeshFile mesh;
-  mesh.file = map.Required("file").ExistingFile();
+  mesh.file = FileOf(map.Required("file"), files);
   const YamlValue unit = map.Required("unit", "Mesh files do not say their unit: mm, m, …");
   mesh.metres_per_unit = base::UnitInSi(unit.Text(), Dimension::kLength, unit.where());
   if (const auto order = map.Optional("order")) {
@@ -104,9 +104,9 @@ std::vector<FixedRegion> ReadFixed(const YamlValue& value, const std::string& wh
 
 }  // namespace
 
-void ReadBody(const YamlValue& value, Scene& scene) {
+void ReadBody(const YamlValue& value, SceneFiles files, Scene& scene) {
   YamlMap body(value);
-  scene.mesh = body.Required("mesh").ReadMap(ReadMesh);
+  scene.mesh = body.Required("mesh").ReadMap([&](YamlMap& map) { return ReadMesh(map, files); });
   scene.materials = ReadMaterials(body.Required("material"));
 
   const std::string why_fixed = "With nothing fixed the body would float away.";

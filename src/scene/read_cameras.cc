@@ -11,16 +11,18 @@ bool LooksLive(const std::string& source) {
   return has("://") || source.rfind("/dev/", 0) == 0 || (has(" ") && has("!"));
 }
 
-std::string ReadSource(const YamlValue& value) {
+std::string ReadSource(const YamlValue& value, SceneFiles files) {
   std::error_code ignored;  // a pipeline may be too long for a file's name
   const bool is_file = std::filesystem::is_regular_file(value.Path(), ignored);
   if (!is_file && LooksLive(value.Text())) return value.Text();
-  return value.ExistingFile().string();
+  return FileOf(value, files).string();
 }
 
-std::map<std::string, std::string> ReadSources(YamlMap& map) {
+std::map<std::string, std::string> ReadSources(YamlMap& map, SceneFiles files) {
   std::map<std::string, std::string> sources;
-  for (const std::string& camera : map.Keys()) sources[camera] = ReadSource(map.Required(camera));
+  for (const std::string& camera : map.Keys()) {
+    sources[camera] = ReadSource(map.Required(camera), files);
+  }
   if (sources.empty()) map.value().Fail("got no cameras, expected at least one");
   return sources;
 }
@@ -39,11 +41,11 @@ calibration::Fiducial ReadFiducial(YamlMap& map) {
 
 }  // namespace
 
-Cameras ReadCameras(YamlMap& map) {
+Cameras ReadCameras(YamlMap& map, SceneFiles files) {
   Cameras cameras;
-  cameras.rig = map.Required("rig").ExistingFile();
+  cameras.rig = FileOf(map.Required("rig"), files);
   cameras.sources = map.Required("sources", "Write for example: {left: left.mp4, right: right.mp4}")
-                        .ReadMap(ReadSources);
+                        .ReadMap([&](YamlMap& sources) { return ReadSources(sources, files); });
   if (const auto fiducials = map.Optional("fiducials")) {
     cameras.fiducials = fiducials->ReadMaps(ReadFiducial);
     RefuseRepeated(*fiducials, cameras.fiducials, [](const calibration::Fiducial& fiducial) {

@@ -5,7 +5,7 @@
 namespace softforce::scene {
 namespace {
 
-void ReadActuation(YamlMap& root, Scene& scene) {
+void ReadActuation(YamlMap& root, SceneFiles files, Scene& scene) {
   if (const auto actuators = root.Optional("actuators")) {
     scene.actuators = ReadActuators(*actuators);
   }
@@ -16,9 +16,9 @@ void ReadActuation(YamlMap& root, Scene& scene) {
     }
     return;
   }
-  scene.actuation_file =
-      root.Required("actuation", "The actuators need a table of their inputs over time.")
-          .ExistingFile();
+  scene.actuation_file = FileOf(
+      root.Required("actuation", "The actuators need a table of their inputs over time."), files);
+  if (files == SceneFiles::kNone) return;
   scene.actuation = ReadActuationTable(*scene.actuation_file, scene.actuators);
 }
 
@@ -36,20 +36,21 @@ void RefuseSharedTags(const Scene& scene, const YamlValue& root) {
 
 }  // namespace
 
-Scene LoadScene(const std::filesystem::path& file) {
+Scene LoadScene(const std::filesystem::path& file, SceneFiles files) {
   return ReadYamlFile(file, [&](YamlMap& root) {
     Scene scene;
     scene.file = std::filesystem::absolute(file).lexically_normal();
     scene.name = root.Required("name").Text();
-    ReadBody(root.Required("body"), scene);
-    ReadActuation(root, scene);
+    ReadBody(root.Required("body"), files, scene);
+    ReadActuation(root, files, scene);
     scene.markers = root.Required("markers").ReadMap(ReadMarkers);
     scene.forces = root.Required("forces").ReadMap(ReadForces);
     if (const auto measured = root.Optional("measured")) {
       measured->Fail("motion-capture input is not available in this version of softforce",
                      "Give \"cameras\" instead.");
     }
-    scene.cameras = root.Required("cameras").ReadMap(ReadCameras);
+    scene.cameras =
+        root.Required("cameras").ReadMap([&](YamlMap& map) { return ReadCameras(map, files); });
     RefuseSharedTags(scene, root.value());
     return scene;
   });

@@ -95,6 +95,98 @@ TEST(MeshCommand, OnlyChecksWithoutAnOutput) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
+const Folder kDataset = Folder(SOFTFORCE_SOURCE_DIR) / "datasets/sheet_two_weights";
+
+// A coarse mesh of the dataset's sheet and its scene in a new folder, without the recording.
+Folder SceneWithoutRecording(const std::string& name) {
+  const Folder folder = testing::FreshFolder(name);
+  std::filesystem::copy(kDataset / "scene.yaml", folder);
+  testing::WriteText(folder / "sheet.geo",
+                     "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 200, 200, 10};\n");
+  return folder;
+}
+
+TEST(MeshCommand, JudgesAMeshInASceneBeforeAnythingIsRecorded) {
+  const Folder folder = SceneWithoutRecording("mesh_scene");
+
+  const testing::ProgramResult run = Mesh(fmt::format(
+      "'{0}/sheet.geo' '{0}/sheet.msh' --size '25 mm' --scene '{0}/scene.yaml' --load '0.3 N' "
+      "--bias-field '{0}/bias.vtu'",
+      folder.string()));
+
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  for (const char* words :
+       {"Forces found with this mesh are", "Displacements change by +", "0.3 N on every candidate",
+        "What to do: refine", "Where to refine", "candidate 1", "marker 13"}) {
+    EXPECT_NE(run.output.find(words), std::string::npos) << words << " is not in " << run.output;
+  }
+  EXPECT_EQ(run.output.find("nan"), std::string::npos) << run.output;
+  EXPECT_TRUE(std::filesystem::exists(folder / "sheet.msh"));
+  EXPECT_NE(testing::ReadText(folder / "bias.vtu").find("bias_share"), std::string::npos);
+}
+
+// Arguments that are refused after IN, and what is named.
+struct RefusedScene {
+  const char* name;
+  const char* arguments;
+  const char* named;
+};
+
+void PrintTo(const RefusedScene& refused, std::ostream* out) { *out << refused.name; }
+
+class RefusedInAScene : public ::testing::TestWithParam<RefusedScene> {};
+
+TEST_P(RefusedInAScene, LeavesEveryFileAsItWas) {
+  const Folder folder = SceneWithoutRecording(std::string("mesh_scene_bad_") + GetParam().name);
+  const std::string scene = testing::ReadText(folder / "scene.yaml");
+  const std::string corner = "{box: {min: 0 0 0 mm, max: 10 10 10 mm}}";
+  const std::size_t at = scene.find(corner);
+  ASSERT_NE(at, std::string::npos);
+  const auto with = [&](const char* fixed) {
+    return std::string(scene).replace(at, corner.size(), fixed);
+  };
+  testing::WriteText(folder / "held.yaml", with("{box: {min: 0 0 0 mm, max: 200 200 10 mm}}"));
+  testing::WriteText(folder / "group.yaml", with("{group: nowhere}"));
+
+  const testing::ProgramResult run = Mesh(fmt::format(
+      fmt::runtime(GetParam().arguments),
+      (folder / "sheet.geo").string() + "' '" + (folder / "out.msh").string() + "' --size '25 mm",
+      folder.string()));
+
+  EXPECT_EQ(run.exit_code, 2) << run.output << run.errors;
+  EXPECT_NE(run.errors.find(GetParam().named), std::string::npos) << run.errors;
+  EXPECT_EQ(testing::ReadText(folder / "scene.yaml"), scene);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.msh"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, RefusedInAScene,
+    ::testing::Values(
+        RefusedScene{"LoadBelowZero", "'{0}' --scene '{1}/scene.yaml' --load '-0.5 N'", "--load"},
+        RefusedScene{"LoadOfAnotherKind", "'{0}' --scene '{1}/scene.yaml' --load '1 mm'", "--load"},
+        RefusedScene{"LoadWithoutScene", "'{0}' --load '1 N'", "need --scene"},
+        RefusedScene{"BiasFieldOfAnotherKind",
+                     "'{0}' --scene '{1}/scene.yaml' --bias-field '{1}/scene.yaml'",
+                     "must end in .vtu"},
+        RefusedScene{"BiasFieldWithoutFolder",
+                     "'{0}' --scene '{1}/scene.yaml' --bias-field '{1}/none/bias.vtu'",
+                     "cannot be written"},
+        RefusedScene{"EverythingHeld", "'{0}' --scene '{1}/held.yaml'", "nothing can move"},
+        RefusedScene{"MissingGroup", "'{0}' --scene '{1}/group.yaml'", "nowhere"}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(MeshCommand, DoesNotWriteABiasFieldOverItsInput) {
+  const Folder folder = SceneWithoutRecording("mesh_scene_onto_input");
+  testing::WriteText(folder / "in.vtu", "precious");
+
+  const testing::ProgramResult run = Mesh(fmt::format(
+      "'{0}/in.vtu' --scene '{0}/scene.yaml' --bias-field '{0}/./in.vtu'", folder.string()));
+
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.errors.find("--bias-field"), std::string::npos) << run.errors;
+  EXPECT_EQ(testing::ReadText(folder / "in.vtu"), "precious");
+}
+
 TEST(MeshCommand, ExplainsItsSelectors) {
   const testing::ProgramResult run = Mesh("--help");
 

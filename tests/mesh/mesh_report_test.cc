@@ -56,6 +56,16 @@ TetMesh Moved(TetMesh mesh, const Eigen::Vector3d& by) {
   return mesh;
 }
 
+TEST(MeshReport, WarnsOfPartsThatFillTheSameSpace) {
+  const TetMesh box = MakeBox(3, 3, 3, {0.03, 0.03, 0.03});
+  const MeshReport overlapping = ExamineMesh(Together(box, Moved(box, {0.015, 0, 0})));
+  const MeshReport beside = ExamineMesh(Together(box, Moved(box, {0.03, 0, 0})));
+
+  EXPECT_GT(overlapping.overlapping_cells, box.num_elements() / 2);
+  EXPECT_THAT(overlapping.warnings, Contains(HasSubstr("fill the same space")));
+  EXPECT_EQ(beside.overlapping_cells, 0);
+}
+
 TEST(MeshReport, GivesTheRegularTetrahedronQualityOneAtAnySize) {
   for (const double edge : {1e-3, 0.1}) {
     const MeshReport report = ExamineMesh(Regular(edge));

@@ -31,7 +31,9 @@ TEST(PrepareMesh, RaisesAndLowersTheOrder) {
       PrepareOptions options;
       options.order = to;
 
-      EXPECT_EQ(PrepareMesh(in, out, options).report.order, to);
+      const PreparedMesh prepared = PrepareMesh(in, out, options);
+      EXPECT_EQ(prepared.report.order, to);
+      WriteMesh(out, prepared.mesh, prepared.out_metres_per_unit);
       const TetMesh read = ReadMesh(out, 1e-3);
 
       EXPECT_EQ(read.order(), to);
@@ -50,7 +52,8 @@ TEST(PrepareMesh, ConvertsAFileOntoItself) {
   const auto path = BoxFile(2);
   const std::string before = softforce::testing::ReadText(path);
 
-  PrepareMesh(path, path);
+  const PreparedMesh prepared = PrepareMesh(path, path);
+  WriteMesh(path, prepared.mesh, prepared.out_metres_per_unit);
 
   EXPECT_EQ(softforce::testing::ReadText(path), before);
 }
@@ -60,6 +63,47 @@ TEST(PrepareMesh, WarnsThatVtkFilesLoseGroups) {
 
   EXPECT_THAT(PrepareMesh(in, in.parent_path() / "out.vtu").report.warnings,
               Contains(HasSubstr("keeps no surface groups")));
+}
+
+TEST(PrepareMesh, WarnsThatVtkFilesLoseNamesOfRegions) {
+  const auto in = BoxFile(1);
+
+  EXPECT_THAT(PrepareMesh(in, in.parent_path() / "out.vtk").report.warnings,
+              Contains(HasSubstr("not the names \"soft\", \"stiff\"")));
+}
+
+TEST(PrepareMesh, WritesNothingAndRefusesWhatCannotBeWritten) {
+  const auto in = BoxFile(1);
+
+  PrepareMesh(in, in.parent_path() / "out.msh");
+
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(in.parent_path()), {}), 1);
+  EXPECT_THAT([&] { PrepareMesh(in, in.parent_path() / "none/out.msh"); },
+              ThrowsMessage<base::InputError>(HasSubstr("cannot be written")));
+}
+
+TEST(PrepareMesh, WarnsOfVolumesThatAreLeftOut) {
+  const auto geo = softforce::testing::WriteText(
+      FreshFolder() / "body.geo",
+      "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 10, 10, 10};\n"
+      "Box(2) = {20, 0, 0, 30, 10, 10};\nPhysical Volume(\"body\") = {1};\n");
+  PrepareOptions options;
+  options.generate.size = 5e-3;  // m
+
+  const PreparedMesh prepared = PrepareMesh(geo, "", options);
+
+  EXPECT_EQ(prepared.mesh.region_names, std::vector<std::string>{"body"});
+  EXPECT_THAT(prepared.report.warnings, Contains(HasSubstr("volume 2, 75.0 % of the whole")));
+}
+
+TEST(PrepareMesh, TakesExtensionsInCapitals) {
+  const auto in = BoxFile(1), capitals = in.parent_path() / "BOX.MSH";
+  std::filesystem::rename(in, capitals);
+
+  const PreparedMesh prepared = PrepareMesh(capitals, in.parent_path() / "OUT.VTU");
+  WriteMesh(in.parent_path() / "OUT.VTU", prepared.mesh, prepared.out_metres_per_unit);
+
+  EXPECT_EQ(ReadMesh(in.parent_path() / "OUT.VTU", 1e-3).num_elements(), prepared.report.elements);
 }
 
 TEST(PrepareMesh, RefusesAMeshThatCheckMeshRefusesAndWritesNothing) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "mesh/mesh_files.h"
@@ -69,6 +70,23 @@ TEST(ReadMesh, RefusesFilesOfAnotherKind) {
   ExpectRefusal(WriteText(folder / "body.msh", "Printf(\"a script\");\n"), "expected a section");
   ExpectRefusal(WriteText(folder / "body.vtk", "solid body\n"), "VTK cannot read it");
   ExpectRefusal(WriteText(folder / "body.vtu", "solid body\n"), "VTK cannot read it");
+}
+
+TEST(ReadMesh, QuotesNoBinaryJunk) {
+  std::string junk = "# vtk \x01\x02\x1b[31m\x80\xff\n";
+  for (int i = 0; i < 3000; ++i) junk += static_cast<char>(i * 37 % 256);
+  const auto path = WriteText(FreshFolder() / "body.vtk", junk);
+  try {
+    ReadMesh(path, 1);
+    ADD_FAILURE() << "was read";
+  } catch (const base::InputError& error) {
+    const std::string text = std::string(error.what()).substr(path.string().size());
+    EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) {
+      return c == '\n' || static_cast<unsigned char>(c) >= ' ';
+    })) << text;
+    EXPECT_EQ(text.find('\xff'), std::string::npos);
+    EXPECT_LT(text.size(), 400u);  // one screen, not the file
+  }
 }
 
 TEST(ReadMesh, RefusesOtherVersionsOfGmshsFormat) {

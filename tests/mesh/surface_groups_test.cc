@@ -148,6 +148,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Refusal{"a=box(0 0, 1 1 1 mm)", "expected 3"},
                       Refusal{"a=normal(0 0 0, 5 deg)", "must have a length"},
                       Refusal{"a=normal(0 0 1, 5 mm)", "mm"},
+                      Refusal{"a=normal(0 0 1, -10 deg)", "the angle is -10 deg"},
+                      Refusal{"a=near(0 0 0 mm, 181 deg)", "the angle is 181 deg"},
                       Refusal{"a=near(0 0 90 mm, 5 deg)", "off the surface"},
                       Refusal{"a=box(70 0 0, 90 40 20 mm)", "selects no triangle"},
                       Refusal{"a=z-min & z-max", "selects no triangle"}));

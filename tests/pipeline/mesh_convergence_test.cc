@@ -69,11 +69,17 @@ TEST(AssessMesh, FindsTheLimitOfACoarseBar) {
   EXPECT_GT(found.overall.refined, 0);
   EXPECT_LT(found.overall.refined, truth);
   EXPECT_NEAR(found.overall.converged, truth, 5e-3);  // the half per cent that is promised
+  EXPECT_GT(found.overall.uncertain, 0);
+  EXPECT_NE(found.FullReport().find(" ± "), std::string::npos);
 }
 
 TEST(AssessMesh, SaysThatFourNodeCellsLock) {
   const MeshConvergence found = Assess(BarScene(), Bar(1, 20, 2), SmallLoadsOnly());
   EXPECT_GT(found.overall.refined, 0.5);
+  EXPECT_TRUE(std::isnan(found.overall.converged));
+  EXPECT_TRUE(std::isnan(found.candidates[0].own.converged));
+  EXPECT_EQ(found.FullReport().find("±"), std::string::npos) << found.FullReport();
+  EXPECT_NE(found.FullReport().find("order: 2"), std::string::npos);
 }
 
 TEST(AssessMesh, FindsLittleWhereTheMeshIsFine) {
@@ -124,6 +130,56 @@ TEST(AssessMesh, ReportsEachCandidateAndMarker) {
   EXPECT_NE(report.find("Where to refine"), std::string::npos);
 }
 
+TEST(AssessMesh, GivesAPointForceNoLimitOfItsOwn) {
+  scene::Scene scene = BarScene();
+  scene.forces.patch = 0;
+  MeshConvergenceOptions options = SmallLoadsOnly();
+  options.max_levels = 2;
+
+  const MeshConvergence found = Assess(scene, Bar(2, 6, 1), options);
+
+  EXPECT_TRUE(std::isnan(found.candidates[0].own.converged));
+  EXPECT_TRUE(std::isfinite(found.overall.converged));
+  EXPECT_NE(found.FullReport().find("Without a patch"), std::string::npos);
+}
+
+TEST(AssessMesh, SaysWhyThereIsNoComparisonAtTooLargeALoad) {
+  scene::Scene scene = BarScene();
+  scene.materials[""].model = fem::MaterialModel::kStVenantKirchhoff;  // fails when it is crushed
+  scene.forces.candidates[0].fixed_direction = {-1, 0, 0};             // against the clamp
+  scene.forces.candidates[0].position = {0.1, 0.005, 0.005};
+  MeshConvergenceOptions options;
+  options.max_levels = 1;
+  options.working_load = 1000;  // N, on 1 cm² of 200 kPa
+
+  const MeshConvergence found = Assess(scene, Bar(2, 6, 1), options);
+
+  EXPECT_FALSE(found.working.ok);
+  EXPECT_NE(found.FullReport().find("no equilibrium was found with 1e+03 N"), std::string::npos)
+      << found.FullReport();
+}
+
+TEST(AssessMesh, RefusesWhatCannotMove) {
+  scene::Scene scene = BarScene();
+  scene.fixed[0].box_max.x() = 0.07;  // m; the first marker is held, the second is not
+  EXPECT_NO_THROW(Assess(scene, Bar(2, 10, 1), SmallLoadsOnly()));
+  scene.markers.points.pop_back();
+  EXPECT_THROW(Assess(scene, Bar(2, 10, 1), SmallLoadsOnly()), base::InputError);
+
+  scene::Scene held = BarScene();
+  held.forces.candidates.push_back(held.forces.candidates[0]);
+  held.forces.candidates[1].id = 4;
+  held.forces.candidates[1].position = {0, 0.005, 0.005};  // on the clamp
+  try {
+    Assess(held, Bar(2, 10, 1), SmallLoadsOnly());
+    ADD_FAILURE() << "was accepted";
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("bar.yaml: forces: candidates: id 4"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(WriteCellShares, ColoursTheCellsInAFile) {
   MeshConvergenceOptions options = SmallLoadsOnly();
   options.max_levels = 1;
@@ -160,7 +216,8 @@ TEST(ChangeOfCells, AddsUpToTheChangeOfTheBias) {
   const World fine = BuildWorld(scene, refinement.mesh);
   const MeshAnswer refined = AnswerOf(fine, given.markers);
 
-  const std::vector<double> changes = ChangeOfCells(coarse, given, fine, refined, refinement);
+  const std::vector<double> changes =
+      ChangeOfCells(coarse.mesh(), given, fine.solver->body(), refined, refinement);
 
   const double sum = std::accumulate(changes.begin(), changes.end(), 0.0);
   // Exact but for the disc of the force, whose mean is taken over other triangles.

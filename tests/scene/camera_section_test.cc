@@ -42,6 +42,19 @@ TEST(CameraSection, ReadsFiducials) {
   EXPECT_TRUE(cameras.fiducials[0].corners[1].isApprox(Eigen::Vector3d(0.02, 0.02, 0)));
 }
 
+TEST(CameraSection, NeedsNoFilesToJudgeAMesh) {
+  const std::filesystem::path file = WriteScene(kSceneText);
+  for (const char* name : {"left.mp4", "rig.yaml", "finger.msh", "actuation.csv"}) {
+    ASSERT_TRUE(std::filesystem::remove(TempFolder() / name)) << name;
+  }
+
+  const Scene scene = LoadScene(file, SceneFiles::kNone);
+
+  EXPECT_EQ(scene.cameras.sources.at("left"), TempFolder() / "left.mp4");
+  EXPECT_FALSE(scene.actuators.empty());
+  EXPECT_TRUE(scene.actuation.time_s.empty());
+}
+
 TEST(CameraSection, RefusesAVideoThatIsNotThere) {
   EXPECT_THAT(SceneRefusal("left.mp4", "lift.mp4"),
               StartsWith("scene.yaml:34: cameras: sources: left: there is no file lift.mp4\n"

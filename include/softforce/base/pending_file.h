@@ -26,4 +26,7 @@ class PendingFile {
   bool owns_ = true;
 };
 
+// Throws InputError unless a file of this name could be written, for a check before long work.
+void CheckCanWrite(const std::filesystem::path& path);
+
 }  // namespace softforce::base

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "softforce/mesh/tet_mesh.h"
 
@@ -17,8 +19,9 @@ struct GenerateOptions {
 };
 
 struct GeneratedMesh {
-  TetMesh mesh;               // order 1, unless a script asks for order 2
-  double solid_volume = NAN;  // m³, of the geometry that was meshed; NaN if not known
+  TetMesh mesh;                       // order 1, unless a script asks for order 2
+  double solid_volume = NAN;          // m³, of the geometry that was meshed; NaN if not known
+  std::vector<std::string> warnings;  // each with advice
 };
 
 // Whether GenerateMesh reads such a file: .stl, .step, .stp, .brep or .geo.

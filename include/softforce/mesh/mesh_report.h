@@ -61,6 +61,9 @@ struct MeshReport {
   int coincident_nodes = 0;  // at the place of another one
   Eigen::Vector3d coincident_at = Eigen::Vector3d::Zero();
 
+  int overlapping_cells = 0;  // their centres lie within a cell of another part
+  Eigen::Vector3d overlapping_at = Eigen::Vector3d::Zero();
+
   std::vector<std::string> warnings;  // each with advice
 
   std::string BriefReport() const;  // one line

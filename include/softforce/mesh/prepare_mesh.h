@@ -22,11 +22,13 @@ struct PrepareOptions {
 struct PreparedMesh {
   TetMesh mesh;
   MeshReport report;
+  double out_metres_per_unit = 1e-3;  // for WriteMesh
 };
 
 // Reads a mesh or generates one from a geometry, names groups of its surface, raises or lowers the
-// order, refuses what no simulation can use (CheckMesh), writes the mesh to `out` unless that is
-// empty, and reports on its quality. Throws InputError; then nothing is written.
+// order, refuses what no simulation can use (CheckMesh), and reports on its quality and on what
+// WriteMesh would lose in `out`, if that is not empty. Writes nothing. Throws InputError, also if
+// `out` could not be written.
 PreparedMesh PrepareMesh(const std::filesystem::path& in, const std::filesystem::path& out,
                          const PrepareOptions& options = {});
 

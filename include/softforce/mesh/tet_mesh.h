@@ -28,12 +28,18 @@ struct TetMesh {
 inline constexpr std::array<std::array<int, 2>, 6> kEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
+// A triangle's corners in ascending order, to find it whichever way it is written.
+std::array<int, 3> Sorted(std::array<int, 3> corners);
+
 // The same cells with 10 nodes each: a node is added in the middle of every edge. A mesh that has
 // 10-node elements already is returned as it is.
 TetMesh RaiseOrder(const TetMesh& mesh);
 
 // The same cells with their corner nodes only (nodes renumbered).
 TetMesh LowerOrder(const TetMesh& mesh);
+
+// One or the other: `order` is 1 or 2.
+TetMesh WithOrder(const TetMesh& mesh, int order);
 
 // Refuses a mesh that no simulation can use: coordinates that are not finite, nodes that no element
 // uses, elements that name a node twice or are inverted (volume ≤ 0). Throws InputError naming

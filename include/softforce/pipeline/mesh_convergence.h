@@ -11,12 +11,12 @@ namespace softforce::pipeline {
 
 struct MeshConvergenceOptions {
   // Locally refined meshes are made until a further one is expected to change the compliance by
-  // less than this share, or one has so many times the degrees of freedom of the given, or there
-  // are so many.
+  // less than this share, or would have more than so many times the degrees of freedom of the
+  // given, or there are so many.
   double settled = 2e-3;
   double max_local_growth = 8;
   int max_levels = 12;
-  double max_memory_gb = 8;  // the once refined mesh is not solved if it is expected to need more
+  double max_memory_gb = 8;  // refused if finer meshes are expected to need more
   // Loads for the comparison at large displacement: N on every candidate, or, if 0, what moves the
   // softest candidate by `working_deflection` of the body's largest side. A negative
   // `working_deflection` leaves the comparison out.
@@ -30,7 +30,8 @@ struct MeshConvergenceOptions {
 // How much too small a displacement on the given mesh is, as a share of it.
 struct MeshBias {
   double refined = NAN;    // against the mesh with every cell cut into 8
-  double converged = NAN;  // against the limit of ever finer meshes, estimated
+  double converged = NAN;  // against the limit of ever finer meshes, estimated; NaN if it cannot be
+  double uncertain = NAN;  // part of `converged` that is extrapolated, not computed; ≥ 0
 };
 
 struct CandidateMeshBias {
@@ -56,6 +57,7 @@ struct CoarsePlace {
 // The comparison at large displacement.
 struct WorkingMeshBias {
   bool ok = false;
+  std::string problem;      // if it was tried and is not ok: one line, with advice
   double load = NAN;        // N on each candidate
   double deflection = NAN;  // m, of the candidate that moves most, given mesh
   MeshBias displacement;    // of the markers, by least squares
@@ -71,13 +73,14 @@ struct LocalMesh {
 struct MeshConvergence {
   int cells = 0, refined_cells = 0;
   int dofs = 0, refined_dofs = 0;
+  bool locks = false;         // 4-node cells: no limit is estimated
+  bool point_forces = false;  // no patch: a candidate's own displacement has no limit
   MeshBias overall;  // of the markers at small displacement, over all candidates, least squares
   std::vector<CandidateMeshBias> candidates;  // a line per direction
   std::vector<MarkerMeshBias> markers;
   WorkingMeshBias working;
   std::vector<CoarsePlace> places;  // largest share first
   Eigen::VectorXd cell_share;  // per given cell, of the difference to the once refined mesh; sum 1
-  double uncertain = NAN;      // part of overall.converged that is extrapolated, not computed
   std::vector<LocalMesh> local;  // coarse to fine
 
   std::string BriefReport() const;  // one line
@@ -93,7 +96,9 @@ struct MeshConvergence {
 // and in the dual displacements, which the markers' weights in b cause if they act as forces. Cells
 // with half of the expected error are cut at each level; what is left after the last level is
 // estimated from the cells' changes and the rate at which the error falls at a clamped edge.
-// Supports given as boxes are looked up anew in each mesh. See docs/mesh_convergence.md.
+// Supports given as boxes are looked up anew in each mesh. Of 4-node cells, which lock, there is no
+// limit, only the comparison with the once refined mesh. See docs/mesh_convergence.md. Throws
+// InputError if no marker or a candidate cannot move, or the refined mesh would be too large.
 MeshConvergence AssessMesh(const scene::Scene& scene, const World& given,
                            const MeshConvergenceOptions& options = {});
 

@@ -102,9 +102,15 @@ struct Scene {
   Cameras cameras;
 };
 
+// Which of the files that a scene names must be there.
+enum class SceneFiles {
+  kAll,
+  kNone,  // to judge a mesh before anything is recorded; the actuation table is left empty
+};
+
 // Reads and checks a scene and its actuation table. Throws InputError naming file, key and line on
 // anything it does not understand: an unknown key, a missing one, a quantity without unit or of the
 // wrong kind, an id given twice, an actuator without a column in the table, …
-Scene LoadScene(const std::filesystem::path& file);
+Scene LoadScene(const std::filesystem::path& file, SceneFiles files = SceneFiles::kAll);
 
 }  // namespace softforce::scene
