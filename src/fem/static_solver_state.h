@@ -32,7 +32,8 @@ struct StaticSolver::State {
   Eigen::MatrixXd CableGradients(const Eigen::Matrix3Xd& u) const;
   Eigen::VectorXd CableLengths(const Eigen::Matrix3Xd& u) const;
 
-  // Factorises the tangent at a state, for which a stable one has no shift.
+  // Factorises the tangent; false if it cannot be made positive definite. `StableAt` is stricter:
+  // whether it is so by itself at an equilibrium.
   bool Factorise(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& tension,
                  const std::vector<double>& pressures);
   bool StableAt(const Equilibrium& state);

@@ -32,7 +32,7 @@ bool WriteStep(const Folder& folder) {
 
 TEST(MeshCommand, MakesAPressureChamberFromAStepFile) {
   const Folder folder = testing::FreshFolder("mesh_step");
-  if (!WriteStep(folder)) GTEST_SKIP() << "the program gmsh is not on this machine";
+  if (!WriteStep(folder)) GTEST_SKIP() << "the program gmsh is not installed";
 
   const testing::ProgramResult run = Mesh(fmt::format(
       "'{0}/body.step' '{0}/body.msh' --size '4 mm' --group chamber=cavity --group base=z-min "
@@ -56,7 +56,7 @@ TEST(MeshCommand, WritesWhatGmshReadsWithoutAComplaint) {
   const Folder folder = testing::FreshFolder("mesh_gmsh");
   const std::string sheet = (Folder(SOFTFORCE_SOURCE_DIR) / "meshes/sheet.msh").string();
   if (testing::RunCommand("gmsh --version").exit_code != 0) {
-    GTEST_SKIP() << "the program gmsh is not on this machine";
+    GTEST_SKIP() << "the program gmsh is not installed";
   }
   ASSERT_EQ(Mesh(fmt::format("'{}' '{}/sheet.msh'", sheet, folder.string())).exit_code, 0);
 

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "softforce/fem/static_solver.h"
+#include "support/every_model.h"
 #include "support/figures.h"
 #include "support/irregular_patch.h"
 
@@ -57,17 +58,8 @@ TEST_P(EveryModelAndOrder, ARigidMotionMakesNoForce) {
   EXPECT_LT(testing::Record("rigid motion, N", largest), 1e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Patch, EveryModelAndOrder,
-    ::testing::Combine(::testing::Values(MaterialModel::kCorotational,
-                                         MaterialModel::kStVenantKirchhoff,
-                                         MaterialModel::kNeoHookean,
-                                         MaterialModel::kNeoHookeanLogarithmic),
-                       ::testing::Values(1, 2)),
-    [](const auto& instance) {
-      return std::string(Name(std::get<0>(instance.param))) +
-             (std::get<1>(instance.param) == 1 ? "_4_nodes" : "_10_nodes");
-    });
+INSTANTIATE_TEST_SUITE_P(Patch, EveryModelAndOrder, testing::EveryModelInBothOrders(),
+                         testing::NameOfModelAndOrder);
 
 }  // namespace
 }  // namespace softforce::fem

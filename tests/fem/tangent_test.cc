@@ -7,6 +7,7 @@
 
 #include "fem/tangent_product.h"
 #include "softforce/fem/static_solver.h"
+#include "support/every_model.h"
 #include "support/figures.h"
 #include "support/irregular_patch.h"
 #include "support/soft_bodies.h"
@@ -94,17 +95,8 @@ TEST_P(Tangent, IsTheDerivativeOfTheForcesWhenPressedFromAllSides) {
             1e-6 * difference.colwise().norm().maxCoeff());
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Models, Tangent,
-    ::testing::Combine(::testing::Values(MaterialModel::kCorotational,
-                                         MaterialModel::kStVenantKirchhoff,
-                                         MaterialModel::kNeoHookean,
-                                         MaterialModel::kNeoHookeanLogarithmic),
-                       ::testing::Values(1, 2)),
-    [](const auto& instance) {
-      return std::string(Name(std::get<0>(instance.param))) +
-             (std::get<1>(instance.param) == 1 ? "_4_nodes" : "_10_nodes");
-    });
+INSTANTIATE_TEST_SUITE_P(Models, Tangent, testing::EveryModelInBothOrders(),
+                         testing::NameOfModelAndOrder);
 
 // What a cable under a tension of 1 that runs freely through its points asks of the nodes to
 // resist: at each point, the two directions in which the cable leaves it.

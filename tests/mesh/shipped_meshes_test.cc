@@ -26,7 +26,7 @@ class ShippedMesh : public ::testing::TestWithParam<Expected> {};
 TEST_P(ShippedMesh, IsReadCompletelyAndIsSound) {
   const Expected& expected = GetParam();
   const fs::path path = fs::path(SOFTFORCE_SOURCE_DIR) / expected.file;
-  if (!fs::exists(path)) GTEST_SKIP() << "not on this machine: " << path;
+  if (!fs::exists(path)) GTEST_SKIP() << "no mesh at " << path;
 
   const TetMesh mesh = ReadMesh(path, 1e-3);
 
