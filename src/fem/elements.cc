@@ -51,13 +51,14 @@ std::vector<Eigen::Vector4d> IntegrationPoints(int nodes) {
 
 }  // namespace
 
-Elements::Elements(const Body& body) : nodes_(body.mesh.elements) {
+Elements::Elements(const mesh::TetMesh& mesh, const std::vector<Material>& materials)
+    : nodes_(mesh.elements) {
   material_of_.reserve(num_elements());
   for (int e = 0; e < num_elements(); ++e) {
-    material_of_.push_back(body.materials[body.mesh.region[e]]);
+    material_of_.push_back(materials[mesh.region[e]]);
   }
   MakeBatches();
-  for (const Batch& batch : batches_) FillBatch(batch, body.mesh.nodes);
+  for (const Batch& batch : batches_) FillBatch(batch, mesh.nodes);
 }
 
 void Elements::MakeBatches() {

@@ -13,7 +13,8 @@ namespace softforce::fem {
 // one point for 4-node cells, the four-point rule of degree 2 for 10-node cells.
 class Elements {
  public:
-  explicit Elements(const Body& body);
+  Elements(const mesh::TetMesh& mesh, const std::vector<Material>& materials);
+  explicit Elements(const Body& body) : Elements(body.mesh, body.materials) {}
 
   int num_elements() const { return static_cast<int>(nodes_.cols()); }
   int nodes_per_element() const { return static_cast<int>(nodes_.rows()); }

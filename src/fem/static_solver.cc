@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "fem/chamber_volume.h"
 #include "fem/static_solver_state.h"
 #include "softforce/base/input_error.h"
 
@@ -170,8 +171,8 @@ SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
   return summary;
 }
 
-Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd& forces,
-                                double max_staleness) {
+Sensitivity StaticSolver::Respond(const Equilibrium& state, const Eigen::MatrixXd& forces,
+                                  const Eigen::MatrixXd& shortening, double max_staleness) {
   State& s = *state_;
   Sensitivity sensitivity;
   if (!s.factor_valid || s.inverse.shift() > 0 ||
@@ -193,15 +194,55 @@ Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd&
 
   sensitivity.ok = true;
   sensitivity.d_tension = Eigen::MatrixXd::Zero(s.num_cables(), k);
-  if (m > 0) {  // W_aa⁻¹ W_af, eq. 4 with the cables' displacement held
+  if (m > 0) {  // eq. 4 with the cables' displacement held, or changed as told (eq. 12)
     const Eigen::MatrixXd W_aa = rhs.rightCols(m).transpose() * solved.rightCols(m);
     const Eigen::MatrixXd W_af = rhs.rightCols(m).transpose() * solved.leftCols(k);
-    const Eigen::MatrixXd d_tension = W_aa.ldlt().solve(W_af);
+    const Eigen::MatrixXd d_tension = W_aa.ldlt().solve(W_af + shortening(held, Eigen::all));
     solved.leftCols(k) -= solved.rightCols(m) * d_tension;
     for (int i = 0; i < m; ++i) sensitivity.d_tension.row(held[i]) = d_tension.row(i);
   }
   sensitivity.du = s.Scatter(solved.leftCols(k));
   return sensitivity;
+}
+
+Sensitivity StaticSolver::Solve(const Equilibrium& state, const Eigen::MatrixXd& forces,
+                                double max_staleness) {
+  return Respond(state, forces, Eigen::MatrixXd::Zero(state_->num_cables(), forces.cols()),
+                 max_staleness);
+}
+
+Sensitivity StaticSolver::SolveActuation(const Equilibrium& state, double max_staleness) {
+  const State& s = *state_;
+  const int cables = s.num_cables();
+  const int chambers = static_cast<int>(s.body.chambers.size());
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(state.u.size(), cables + chambers);
+  Eigen::MatrixXd shortening = Eigen::MatrixXd::Zero(cables, cables + chambers);
+  const Eigen::MatrixXd G = s.CableGradients(state.u);
+  std::vector<int> pulled;
+  for (int c = 0; c < cables; ++c) {
+    if (state.load.actuation.cables[c].input == CableInput::kTension) {
+      forces.col(c) = -G.col(c);
+      pulled.push_back(c);
+    } else {
+      shortening(c, c) = 1;
+    }
+  }
+  for (int k = 0; k < chambers; ++k) {
+    Eigen::Matrix3Xd gradient = Eigen::Matrix3Xd::Zero(3, state.u.cols());
+    AddChamberVolumeGradient(s.body.chambers[k], s.body.mesh.nodes + state.u, 1, &gradient);
+    forces.col(cables + k) = gradient.reshaped();
+  }
+  Sensitivity sensitivity = Respond(state, forces, shortening, max_staleness);
+  if (sensitivity.ok) {
+    for (const int c : pulled) sensitivity.d_tension(c, c) = 1;
+  }
+  return sensitivity;
+}
+
+void StaticSolver::SetMaterials(std::vector<Material> materials) {
+  assert(materials.size() == state_->body.materials.size());
+  for (const Material& material : materials) material.Check("material");
+  state_->SetMaterials(std::move(materials));
 }
 
 double StaticSolver::ElasticEnergy(const Equilibrium& state) const {
@@ -212,6 +253,13 @@ double StaticSolver::ElasticEnergy(const Equilibrium& state) const {
 Eigen::Matrix3Xd StaticSolver::InternalForces(const Eigen::Matrix3Xd& u) const {
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, u.cols());
   state_->elements.EnergyAndForces(u, &forces);
+  return forces;
+}
+
+Eigen::Matrix3Xd StaticSolver::InternalForces(const Eigen::Matrix3Xd& u,
+                                              const std::vector<Material>& materials) const {
+  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, u.cols());
+  Elements(state_->body.mesh, materials).EnergyAndForces(u, &forces);
   return forces;
 }
 

@@ -16,6 +16,14 @@ StaticSolver::State::State(Body body_in, const StaticSolverOptions& options_in)
   rest_length = CableLengths(Eigen::Matrix3Xd::Zero(3, body.mesh.num_nodes()));
 }
 
+void StaticSolver::State::SetMaterials(std::vector<Material> materials) {
+  body.materials = std::move(materials);
+  elements = Elements(body);
+  stiffness = elements.ShearModulusTimesVolume();
+  elastic = Elastic();
+  factor_valid = false;
+}
+
 Eigen::MatrixXd StaticSolver::State::Gather(const Eigen::MatrixXd& all) const {
   Eigen::MatrixXd free(3 * assembler.num_free_nodes(), all.cols());
   for (int node = 0; node < body.mesh.num_nodes(); ++node) {

@@ -21,6 +21,8 @@ inline double LargestMove(const Eigen::Matrix3Xd& du) {
 struct StaticSolver::State {
   State(Body body_in, const StaticSolverOptions& options_in);
 
+  void SetMaterials(std::vector<Material> materials);
+
   int num_cables() const { return static_cast<int>(body.cables.size()); }
 
   // Nodal vectors of the whole body to those of the free nodes and back, column by column. Held

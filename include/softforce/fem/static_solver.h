@@ -79,13 +79,14 @@ struct SolveSummary {
   std::string Advice() const;  // what to try if it is not ok; empty if it is
 };
 
-// How the body answers to small changes of the dead loads, at an equilibrium and with the commands
-// of the cables held: a cable commanded by displacement gives way in tension (paper eqs. 4 and 12).
+// How the body answers to small changes of what acts on it, at an equilibrium and with the other
+// commands of the cables held: a cable commanded by displacement gives way in tension (paper eqs. 4
+// and 12).
 struct Sensitivity {
   bool ok =
       false;  // false if the tangent is not positive definite there: the body is about to buckle
-  Eigen::MatrixXd du;         // 3N×k, m/N: K⁻¹ Hᵀ and its correction for the cables
-  Eigen::MatrixXd d_tension;  // cables×k
+  Eigen::MatrixXd du;  // 3N×k, m per N (or m, Pa): K⁻¹ Hᵀ and its correction for the cables
+  Eigen::MatrixXd d_tension;  // cables×k, N per the same
 };
 
 // Quasi-static equilibrium at large displacement:
@@ -125,13 +126,30 @@ class StaticSolver {
   // any node stands further than `max_staleness` (m) from where it was last factorised.
   Sensitivity Solve(const Equilibrium& state, const Eigen::MatrixXd& forces, double max_staleness);
 
+  // The same for small changes of the actuators' commands (their values: N or m of the cables, Pa
+  // of the chambers), the dead loads and all other commands held. Columns: cables, then chambers.
+  Sensitivity SolveActuation(const Equilibrium& state, double max_staleness);
+
+  // Makes the body of other materials, one per region, after which no equilibrium found before is
+  // one. Throws InputError for a material that is of no use.
+  void SetMaterials(std::vector<Material> materials);
+
   // Elastic energy (J), for tests and reports.
   double ElasticEnergy(const Equilibrium& state) const;
 
   // Forces that the cells exert on the nodes, 3×N, N: f_int.
   Eigen::Matrix3Xd InternalForces(const Eigen::Matrix3Xd& u) const;
 
+  // The same if the body were made of other materials: what derivatives by them are made of.
+  Eigen::Matrix3Xd InternalForces(const Eigen::Matrix3Xd& u,
+                                  const std::vector<Material>& materials) const;
+
  private:
+  // The answer to k changes of the dead loads (3N×k, N) that come with changes of the commands of
+  // the cables driven by displacement (cables×k, m).
+  Sensitivity Respond(const Equilibrium& state, const Eigen::MatrixXd& forces,
+                      const Eigen::MatrixXd& shortening, double max_staleness);
+
   struct State;
   std::unique_ptr<State> state_;
 };
