@@ -2,7 +2,6 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "fem/progress.h"
 #include "fem/static_solver_state.h"
 
 namespace softforce::fem {
@@ -122,12 +121,10 @@ bool StaticSolver::State::SlackCablesFit(const LoadCase& load, const Equilibrium
   return true;
 }
 
-SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, Equilibrium* state,
-                                                 SolveSummary* summary) {
-  const double tolerance = options.tolerance * diagonal;
+SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, double tolerance,
+                                                 Equilibrium* state, SolveSummary* summary) {
   Balance balance = Evaluate(load, state->u);
   if (!std::isfinite(balance.energy)) return SolveSummary::Status::kNotConverged;
-  Progress progress;
   int unstable_steps = 0;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const bool fresh = !factor_valid;

@@ -130,6 +130,17 @@ LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
 }  // namespace
 
 SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
+  state_->progress = Progress();
+  return Reach(load, state_->options.tolerance * state_->diagonal, state);
+}
+
+SolveSummary StaticSolver::Approach(const LoadCase& load, double tolerance, bool continued,
+                                    Equilibrium* state) {
+  if (!continued) state_->progress = Progress();
+  return Reach(load, tolerance, state);
+}
+
+SolveSummary StaticSolver::Reach(const LoadCase& load, double tolerance, Equilibrium* state) {
   State& s = *state_;
   assert(load.actuation.cables.size() == s.body.cables.size());
   assert(load.actuation.pressures.size() == s.body.chambers.size());
@@ -146,7 +157,8 @@ SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
     trial.load = next < 1 ? Between(from, load, next) : load;
     ++summary.load_steps;
     summary.inverted_element = -1;
-    summary.status = s.Newton(trial.load, &trial, &summary);
+    if (summary.load_steps > 1) s.progress = Progress();
+    summary.status = s.Newton(trial.load, tolerance, &trial, &summary);
     if (summary.ok()) {
       summary.inverted_element = s.elements.InvertedElement(trial.u);
       if (summary.inverted_element >= 0) summary.status = SolveSummary::Status::kInverted;
@@ -169,6 +181,21 @@ SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
     summary.inverted_at = s.elements.Centre(summary.inverted_element, s.body.mesh.nodes);
   }
   return summary;
+}
+
+bool StaticSolver::LinearStep(const LoadCase& load, Equilibrium* state) {
+  State& s = *state_;
+  if (!s.StableAt(*state)) return false;
+  const State::Balance balance = s.Evaluate(load, state->u);
+  if (!std::isfinite(balance.energy)) return false;
+  State::Step step;
+  s.MakeStep(load, *state, balance.unbalanced, &step);
+  if (!step.du.allFinite()) return false;
+  state->u += step.du;
+  state->tension = step.tension;
+  state->shortening = s.rest_length - s.CableLengths(state->u);
+  state->load = load;
+  return true;
 }
 
 Sensitivity StaticSolver::Respond(const Equilibrium& state, const Eigen::MatrixXd& forces,

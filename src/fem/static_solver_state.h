@@ -6,6 +6,7 @@
 
 #include "fem/cable_path.h"
 #include "fem/elements.h"
+#include "fem/progress.h"
 #include "fem/tangent.h"
 #include "fem/tangent_inverse.h"
 #include "softforce/fem/static_solver.h"
@@ -73,8 +74,9 @@ struct StaticSolver::State {
 
   bool SlackCablesFit(const LoadCase& load, const Equilibrium& state, double tolerance) const;
   SolveSummary::Status StalledStatus() const;
-  // Moves `state` to the equilibrium under `load`; why not, if it cannot.
-  SolveSummary::Status Newton(const LoadCase& load, Equilibrium* state, SolveSummary* summary);
+  // Moves `state` to within `tolerance` (m) of the equilibrium under `load`; why not, if it cannot.
+  SolveSummary::Status Newton(const LoadCase& load, double tolerance, Equilibrium* state,
+                              SolveSummary* summary);
 
   Body body;
   StaticSolverOptions options;
@@ -90,6 +92,7 @@ struct StaticSolver::State {
   Eigen::Matrix3Xd factor_u;      // where the tangent was factorised
   Eigen::MatrixXd cable_columns;  // K⁻¹ · cable gradients there, on the free degrees of freedom
   bool factor_valid = false;
+  Progress progress;  // of the steps towards the load at hand
   double wasted = 0;  // iterations that a fresh factor would have saved since
 };
 

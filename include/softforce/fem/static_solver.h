@@ -122,6 +122,16 @@ class StaticSolver {
   // equilibrium reached on the way.
   SolveSummary Solve(const LoadCase& load, Equilibrium* state);
 
+  // The same, but only until no node would move further than `tolerance` (m), often after a single
+  // step: for a load that is itself still being looked for. Of several approaches that follow one
+  // another closely, all but the first are `continued`: a kept tangent that makes them many is
+  // given up.
+  SolveSummary Approach(const LoadCase& load, double tolerance, bool continued, Equilibrium* state);
+
+  // One step of Newton's method with the tangent at `state`, without regard to how far that is
+  // right (paper eqs. 3 and 4): false, and `state` as it was, if there is none.
+  bool LinearStep(const LoadCase& load, Equilibrium* state);
+
   // Solves for the k columns of `forces` (3N×k, N) at `state`. The tangent is factorised anew if
   // any node stands further than `max_staleness` (m) from where it was last factorised.
   Sensitivity Solve(const Equilibrium& state, const Eigen::MatrixXd& forces, double max_staleness);
@@ -145,6 +155,9 @@ class StaticSolver {
                                   const std::vector<Material>& materials) const;
 
  private:
+  // Moves `state` to `load`, in smaller steps if it must.
+  SolveSummary Reach(const LoadCase& load, double tolerance, Equilibrium* state);
+
   // The answer to k changes of the dead loads (3N×k, N) that come with changes of the commands of
   // the cables driven by displacement (cables×k, m).
   Sensitivity Respond(const Equilibrium& state, const Eigen::MatrixXd& forces,
