@@ -98,8 +98,8 @@ FrameResult Tracker::Process(int frame, double time_s,
   for (size_t f = 0; f < located.size(); ++f) {
     if (located[f].whitening.rows() == 0) continue;
     const BodyPoint& point = features_.features()[f].point;
-    observations.push_back(
-        {point.weights, point.offset, located[f].position, located[f].whitening});
+    observations.push_back({point.weights, point.offset, located[f].position, located[f].whitening,
+                            features_.features()[f].marker});
     feature_of.push_back(f);
   }
   const estimation::ForceEstimate estimate = estimator_.Estimate(observations, actuation);

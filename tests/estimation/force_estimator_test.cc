@@ -169,7 +169,7 @@ TEST(ForceEstimator, SaysThatForcesCannotBeToldApart) {
   const ForceEstimate estimate = estimator.Estimate(bar.Observe(bar.Load(force), kNoise), {});
 
   EXPECT_EQ(estimate.status, ForceEstimate::Status::kUnobservable) << estimate.BriefReport();
-  EXPECT_NE(estimate.reason.find("tip, tip"), std::string::npos) << estimate.reason;
+  EXPECT_NE(estimate.reason.find("candidate tip, candidate tip"), std::string::npos) << estimate.reason;
 }
 
 TEST(ForceEstimator, RefusesOptionsOutOfRange) {
@@ -181,11 +181,12 @@ TEST(ForceEstimator, RefusesOptionsOutOfRange) {
   refuses([](EstimatorOptions& o) { o.common_model_error = -1; });
   refuses([](EstimatorOptions& o) { o.local_model_error = NAN; });
   refuses([](EstimatorOptions& o) { o.loss_scale = 0; });
+  refuses([](EstimatorOptions& o) { o.force_walk = 0; });
   refuses([](EstimatorOptions& o) { o.rejection_probability = 0; });
   refuses([](EstimatorOptions& o) { o.max_rejected_share = 1; });
   refuses([](EstimatorOptions& o) { o.min_singular_ratio = 0; });
   refuses([](EstimatorOptions& o) { o.max_iterations = 0; });
-  refuses([](EstimatorOptions& o) { o.cost_tolerance = 0; });
+  refuses([](EstimatorOptions& o) { o.tolerance = 0; });
   refuses([](EstimatorOptions& o) { o.max_staleness = -1; });
 }
 

@@ -1,0 +1,141 @@
+#include "estimation/loaded_body.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace softforce::estimation {
+
+LoadedBody::LoadedBody(fem::StaticSolver* solver, const std::vector<ForceSite>& sites,
+                       const std::vector<ActuatorUncertainty>& actuators, double max_staleness)
+    : solver_(solver), max_staleness_(max_staleness) {
+  int components = 0;
+  for (const ForceSite& site : sites) components += static_cast<int>(site.directions.cols());
+  H_f_ = Eigen::MatrixXd::Zero(3 * solver->body().mesh.num_nodes(), components);
+  int first = 0;
+  for (const ForceSite& site : sites) {
+    const auto directions = static_cast<int>(site.directions.cols());
+    for (size_t i = 0; i < site.at.nodes.size(); ++i) {
+      H_f_.block(3 * site.at.nodes[i], first, 3, directions) = site.at.weights[i] * site.directions;
+    }
+    first += directions;
+  }
+  for (int a = 0; a < static_cast<int>(actuators.size()); ++a) {
+    if (actuators[a] > 0) uncertain_.push_back(a);
+  }
+  pose_ = {solver->AtRest(), Eigen::VectorXd::Zero(num_loads())};
+}
+
+fem::LoadCase LoadedBody::LoadOf(const Eigen::VectorXd& loads, const fem::Actuation& told) const {
+  fem::LoadCase load{(H_f_ * loads.head(num_components())).reshaped(3, H_f_.rows() / 3), told};
+  const int cables = static_cast<int>(told.cables.size());
+  for (size_t i = 0; i < uncertain_.size(); ++i) {
+    const int a = uncertain_[i];
+    const double change = loads(num_components() + static_cast<int>(i));
+    double& value =
+        a < cables ? load.actuation.cables[a].value : load.actuation.pressures[a - cables];
+    value += change;
+    const bool tension = a < cables && told.cables[a].input == fem::CableInput::kTension;
+    if (tension) value = std::max(0.0, value);
+  }
+  return load;
+}
+
+bool LoadedBody::IsAt(const Eigen::VectorXd& loads, const fem::Actuation& told) const {
+  const fem::LoadCase load = LoadOf(loads, told);
+  const fem::LoadCase& now = pose_.state.load;
+  const auto same = [](const fem::CableCommand& a, const fem::CableCommand& b) {
+    return a.input == b.input && a.value == b.value;
+  };
+  return loads == pose_.loads && now.weight_share == load.weight_share &&
+         now.actuation.pressures == load.actuation.pressures &&
+         std::equal(now.actuation.cables.begin(), now.actuation.cables.end(),
+                    load.actuation.cables.begin(), load.actuation.cables.end(), same) &&
+         response_u_.cols() == pose_.state.u.cols() && IsResponseFresh();
+}
+
+fem::SolveSummary LoadedBody::Move(const Eigen::VectorXd& loads, const fem::Actuation& told,
+                                   double tolerance, bool continued) {
+  // A small change starts from the linear answer; Newton's method does the rest. Over a large one
+  // the linear answer stretches what should turn, and the old shape is the better start.
+  Pose trial = pose_;
+  const Eigen::VectorXd change = loads - pose_.loads;
+  const bool predicted = response_u_.cols() == trial.state.u.cols() && !change.isZero(0) &&
+                         MoveBy(change) <= max_staleness_;
+  if (predicted) trial.state.u += (response_ * change).reshaped(3, trial.state.u.cols());
+  const fem::LoadCase load = LoadOf(loads, told);
+  fem::SolveSummary summary = solver_->Approach(load, tolerance, continued, &trial.state);
+  factorisations_ += summary.factorisations;
+  if (!summary.ok() && predicted) {
+    trial = pose_;
+    summary = solver_->Approach(load, tolerance, false, &trial.state);
+    factorisations_ += summary.factorisations;
+  }
+  if (!summary.ok()) return summary;
+  trial.loads = loads;
+  std::swap(pose_, trial);
+  if (!RefreshResponse()) {
+    std::swap(pose_, trial);
+    summary.status = fem::SolveSummary::Status::kUnstable;
+  }
+  return summary;
+}
+
+bool LoadedBody::IsResponseFresh() const {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> taut = pose_.state.tension.array() > 0;
+  return response_u_.cols() == pose_.state.u.cols() && (taut == response_taut_).all() &&
+         (pose_.state.u - response_u_).colwise().squaredNorm().maxCoeff() <=
+             max_staleness_ * max_staleness_;
+}
+
+bool LoadedBody::RefreshResponse() {
+  if (IsResponseFresh()) return true;
+  fem::Sensitivity to_forces = solver_->Solve(pose_.state, H_f_, max_staleness_);
+  if (!to_forces.ok) return false;
+  response_.resize(H_f_.rows(), num_loads());
+  response_.leftCols(num_components()) = to_forces.du;
+  if (!uncertain_.empty()) {
+    const fem::Sensitivity to_commands = solver_->SolveActuation(pose_.state, max_staleness_);
+    if (!to_commands.ok) return false;
+    response_.rightCols(static_cast<int>(uncertain_.size())) =
+        to_commands.du(Eigen::all, uncertain_);
+  }
+  response_u_ = pose_.state.u;
+  response_taut_ = pose_.state.tension.array() > 0;
+  return true;
+}
+
+bool LoadedBody::StepLinearly(const Eigen::VectorXd& loads, const fem::Actuation& told) {
+  // The response first: the step factorises the tangent at the pose, which is what it needs.
+  Pose trial = pose_;
+  if (!solver_->LinearStep(LoadOf(loads, told), &trial.state)) return false;
+  ++factorisations_;
+  response_u_.resize(3, 0);  // stale whatever it was
+  const bool fresh = RefreshResponse();
+  trial.loads = loads;
+  if (fresh) pose_ = trial;
+  return fresh;
+}
+
+void LoadedBody::Shift(const Eigen::VectorXd& loads) {
+  pose_.state.u += (response_ * (loads - pose_.loads)).reshaped(3, pose_.state.u.cols());
+  pose_.loads = loads;
+}
+
+Eigen::Vector3d LoadedBody::Position(const mesh::NodalWeights& at) const {
+  return at.Apply(solver_->body().mesh.nodes) + at.Apply(pose_.state.u);
+}
+
+Eigen::Matrix3Xd LoadedBody::Response(const mesh::NodalWeights& at) const {
+  Eigen::Matrix3Xd W = Eigen::Matrix3Xd::Zero(3, num_loads());
+  for (size_t i = 0; i < at.nodes.size(); ++i) {
+    W += at.weights[i] * response_.middleRows<3>(3 * at.nodes[i]);
+  }
+  return W;
+}
+
+double LoadedBody::MoveBy(const Eigen::VectorXd& change) const {
+  const Eigen::Matrix3Xd du = (response_ * change).reshaped(3, response_.rows() / 3);
+  return du.colwise().norm().maxCoeff();
+}
+
+}  // namespace softforce::estimation
