@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
+#include <map>
 
 #include "softforce/geometry/chi_square.h"
 
@@ -19,6 +20,53 @@ const vision::Tag* FindTag(const CameraDetections& camera, const scene::Markers&
     found = &tag;
   }
   return found;
+}
+
+// A mean of places on the body under construction.
+struct PlaceMean {
+  std::map<int, double> weights;  // per node
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+
+  void Add(const World& world, const Eigen::Vector3d& place, double share) {
+    const mesh::SurfaceProjection on =
+        mesh::ClosestSurfacePoint(world.surface, world.mesh().nodes, place);
+    const mesh::NodalWeights shape = mesh::ShapeFunctions(world.surface, on.at);
+    for (size_t n = 0; n < shape.nodes.size(); ++n) {
+      weights[shape.nodes[n]] += share * shape.weights[n];
+    }
+    offset += share * (place - on.position);
+  }
+};
+
+// Where corner i of a tag is seen. A detected corner is where straight lines through the tag's
+// sides cross; on a body that bends the sides are curved, and the lines' ends miss the material
+// corner (by 0.05 mm for 14 mm on a radius of 0.45 m). So the end of each side's line is taken,
+// as a mean of places along it, and of both ends the middle.
+BodyPoint SeenCorner(const World& world, const std::array<Eigen::Vector3d, 4>& corners, int i) {
+  constexpr int kSamples = 9;
+  constexpr double kMargin = 0.1;  // of a side, at either end, that the lines leave out
+  PlaceMean mean;
+  for (const int other : {(i + 1) % 4, (i + 3) % 4}) {
+    double spread = 0;
+    std::array<double, kSamples> along;  // from this corner (0) to the other (1), less 1/2
+    for (int k = 0; k < kSamples; ++k) {
+      along[k] = (1 - 2 * kMargin) * (static_cast<double>(k) / (kSamples - 1) - 0.5);
+      spread += along[k] * along[k];
+    }
+    for (int k = 0; k < kSamples; ++k) {
+      const double share = 1.0 / kSamples - 0.5 * along[k] / spread;  // of the line's value at 0
+      const double s = along[k] + 0.5;
+      mean.Add(world, (1 - s) * corners[i] + s * corners[other], 0.5 * share);
+    }
+  }
+  BodyPoint point;
+  point.at = mesh::ClosestSurfacePoint(world.surface, world.mesh().nodes, corners[i]).at;
+  for (const auto& [node, weight] : mean.weights) {
+    point.weights.nodes.push_back(node);
+    point.weights.weights.push_back(weight);
+  }
+  point.offset = mean.offset;
+  return point;
 }
 
 }  // namespace
@@ -78,12 +126,13 @@ void MarkerFeatures::PlaceTag(int marker, const Eigen::Vector3d& up_robot,
   const Eigen::Vector3d right = up.cross(normal);
   const double half = scene_.markers.size / 2;
   const std::array<Eigen::Vector2d, 4> square{{{-1, 1}, {1, 1}, {1, -1}, {-1, -1}}};
-  const Eigen::Vector3d middle = scene_.markers.points[marker].position;
+  std::array<Eigen::Vector3d, 4> corners;
   for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d place = middle + half * (square[i].x() * right + square[i].y() * up);
-    const mesh::SurfaceProjection on = mesh::ClosestSurfacePoint(world_.surface, X, place);
-    features_.push_back(
-        {marker, i, {on.at, mesh::ShapeFunctions(world_.surface, on.at), place - on.position}, 0});
+    corners[i] = scene_.markers.points[marker].position +
+                 half * (square[i].x() * right + square[i].y() * up);
+  }
+  for (int i = 0; i < 4; ++i) {
+    features_.push_back({marker, i, SeenCorner(world_, corners, i), 0});
   }
   placed_[marker] = 1;
 }

@@ -30,8 +30,8 @@ struct EstimatorOptions {
   // mesh too stiff at its supports, supports that give way, a rig that shifted. It is estimated
   // along with the forces (see ForceEstimate::offset). The other part differs from point to point
   // and is added to the covariance of each.
-  double common_model_error = 0.01;
-  double local_model_error = 0.005;
+  double common_model_error = 0.005;
+  double local_model_error = 0.002;
   // N, standard deviation of how far a force component may go from one frame to the next: a prior
   // about the last usable estimate, whose covariance grows by it with every frame. Infinite: each
   // frame stands for itself.
