@@ -20,7 +20,7 @@ constexpr double kScaleTolerance = 0.2;
 // of its diagonal: enough to linearise about.
 constexpr double kNearEquilibrium = 1e-5;
 // A step of the loads is followed to this share of the movement that it makes.
-constexpr double kFollowing = 0.1;
+constexpr double kFollowing = 0.02;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
 constexpr int kMaxHalvings = 8;
 
@@ -131,8 +131,7 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
     for (int halving = 0; halving <= kMaxHalvings && !moved; ++halving, share /= 2) {
       const Eigen::VectorXd trial = *parameters + share * step;
       const double move = body.MoveBy(trial.head(num_loads()) - before.loads);
-      const double tolerance =
-          std::clamp(kFollowing * move, finest, std::max(finest, kNearEquilibrium * diagonal));
+      const double tolerance = std::max(finest, kFollowing * move);
       if (!body.Move(trial.head(num_loads()), told, tolerance, iteration > 0).ok()) continue;
       std::vector<ResidualBlock> there = Linearise(used, prior, trial);
       const double cost_there = RobustCost(there, trial, trial, options.loss_scale);

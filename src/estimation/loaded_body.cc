@@ -40,17 +40,32 @@ fem::LoadCase LoadedBody::LoadOf(const Eigen::VectorXd& loads, const fem::Actuat
   return load;
 }
 
-bool LoadedBody::IsAt(const Eigen::VectorXd& loads, const fem::Actuation& told) const {
-  const fem::LoadCase load = LoadOf(loads, told);
+bool LoadedBody::IsTold(const fem::Actuation& told) const {
+  const fem::LoadCase load = LoadOf(pose_.loads, told);
   const fem::LoadCase& now = pose_.state.load;
   const auto same = [](const fem::CableCommand& a, const fem::CableCommand& b) {
     return a.input == b.input && a.value == b.value;
   };
-  return loads == pose_.loads && now.weight_share == load.weight_share &&
+  return now.weight_share == load.weight_share &&
          now.actuation.pressures == load.actuation.pressures &&
          std::equal(now.actuation.cables.begin(), now.actuation.cables.end(),
-                    load.actuation.cables.begin(), load.actuation.cables.end(), same) &&
-         response_u_.cols() == pose_.state.u.cols() && IsResponseFresh();
+                    load.actuation.cables.begin(), load.actuation.cables.end(), same);
+}
+
+bool LoadedBody::IsAt(const Eigen::VectorXd& loads, const fem::Actuation& told) const {
+  return loads == pose_.loads && IsTold(told) && IsResponseFresh();
+}
+
+// Broyden's update: the response becomes right for the change of loads that has just been made,
+// and stays as it was for all others. Loads count by how far they move the body.
+void LoadedBody::LearnFrom(const Pose& before, const Eigen::VectorXd& change, double tolerance) {
+  const Eigen::VectorXd moved = (pose_.state.u - before.state.u).reshaped();
+  const Eigen::VectorXd missed = moved - response_ * change;
+  constexpr double kClear = 10;  // tolerances: smaller movements are not known well enough
+  if (!(moved.cwiseAbs().maxCoeff() > kClear * tolerance)) return;
+  const Eigen::VectorXd weighted =
+      response_.colwise().squaredNorm().transpose().cwiseProduct(change);
+  response_ += missed * weighted.transpose() / weighted.dot(change);
 }
 
 fem::SolveSummary LoadedBody::Move(const Eigen::VectorXd& loads, const fem::Actuation& told,
@@ -59,6 +74,7 @@ fem::SolveSummary LoadedBody::Move(const Eigen::VectorXd& loads, const fem::Actu
   // the linear answer stretches what should turn, and the old shape is the better start.
   Pose trial = pose_;
   const Eigen::VectorXd change = loads - pose_.loads;
+  const bool told_alike = IsTold(told);
   const bool predicted = response_u_.cols() == trial.state.u.cols() && !change.isZero(0) &&
                          MoveBy(change) <= max_staleness_;
   if (predicted) trial.state.u += (response_ * change).reshaped(3, trial.state.u.cols());
@@ -73,6 +89,7 @@ fem::SolveSummary LoadedBody::Move(const Eigen::VectorXd& loads, const fem::Actu
   if (!summary.ok()) return summary;
   trial.loads = loads;
   std::swap(pose_, trial);
+  if (predicted && told_alike) LearnFrom(trial, change, tolerance);
   if (!RefreshResponse()) {
     std::swap(pose_, trial);
     summary.status = fem::SolveSummary::Status::kUnstable;

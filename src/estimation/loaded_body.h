@@ -56,7 +56,9 @@ class LoadedBody {
   int factorisations() const { return factorisations_; }  // so far
 
  private:
+  bool IsTold(const fem::Actuation& told) const;
   bool IsResponseFresh() const;
+  void LearnFrom(const Pose& before, const Eigen::VectorXd& change, double tolerance);
   bool RefreshResponse();
 
   fem::StaticSolver* solver_;

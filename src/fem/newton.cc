@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "fem/progress.h"
 #include "fem/static_solver_state.h"
 
 namespace softforce::fem {
@@ -125,6 +126,7 @@ SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, double to
                                                  Equilibrium* state, SolveSummary* summary) {
   Balance balance = Evaluate(load, state->u);
   if (!std::isfinite(balance.energy)) return SolveSummary::Status::kNotConverged;
+  Progress progress;
   int unstable_steps = 0;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const bool fresh = !factor_valid;
@@ -166,7 +168,7 @@ SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, double to
       return inverse.shift() > 0 ? SolveSummary::Status::kUnstable
                                  : SolveSummary::Status::kConverged;
     }
-    if (progress.steps() > kFreshSteps) ++wasted;
+    if (++steps_to_load > kFreshSteps) ++wasted;
     const double worth = options.factorisation_worth;
     factor_valid = share == 1 && inverse.shift() == 0 && worth > 0 &&
                    wasted + progress.steps_left(tolerance) - kFreshSteps <= worth;

@@ -130,13 +130,13 @@ LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
 }  // namespace
 
 SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
-  state_->progress = Progress();
+  state_->steps_to_load = 0;
   return Reach(load, state_->options.tolerance * state_->diagonal, state);
 }
 
 SolveSummary StaticSolver::Approach(const LoadCase& load, double tolerance, bool continued,
                                     Equilibrium* state) {
-  if (!continued) state_->progress = Progress();
+  if (!continued) state_->steps_to_load = 0;
   return Reach(load, tolerance, state);
 }
 
@@ -157,7 +157,7 @@ SolveSummary StaticSolver::Reach(const LoadCase& load, double tolerance, Equilib
     trial.load = next < 1 ? Between(from, load, next) : load;
     ++summary.load_steps;
     summary.inverted_element = -1;
-    if (summary.load_steps > 1) s.progress = Progress();
+    if (summary.load_steps > 1) s.steps_to_load = 0;
     summary.status = s.Newton(trial.load, tolerance, &trial, &summary);
     if (summary.ok()) {
       summary.inverted_element = s.elements.InvertedElement(trial.u);

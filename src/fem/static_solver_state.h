@@ -6,7 +6,6 @@
 
 #include "fem/cable_path.h"
 #include "fem/elements.h"
-#include "fem/progress.h"
 #include "fem/tangent.h"
 #include "fem/tangent_inverse.h"
 #include "softforce/fem/static_solver.h"
@@ -92,8 +91,8 @@ struct StaticSolver::State {
   Eigen::Matrix3Xd factor_u;      // where the tangent was factorised
   Eigen::MatrixXd cable_columns;  // K⁻¹ · cable gradients there, on the free degrees of freedom
   bool factor_valid = false;
-  Progress progress;  // of the steps towards the load at hand
-  double wasted = 0;  // iterations that a fresh factor would have saved since
+  int steps_to_load = 0;  // iterations since the load was changed by more than a correction
+  double wasted = 0;      // iterations that a fresh factor would have saved since
 };
 
 }  // namespace softforce::fem

@@ -44,7 +44,7 @@ struct EstimatorOptions {
   int max_iterations = 30;
   // Converged when neither the estimate nor any observed point would move by more than so many of
   // its standard deviations.
-  double tolerance = 0.01;
+  double tolerance = 0.05;
   double max_staleness =
       2e-3;  // m, how far the body may move before the compliance is computed anew
 
