@@ -76,6 +76,7 @@ ForceEstimator::State::State(fem::StaticSolver* solver_in, std::vector<ForceSite
       body(solver, sites, actuators, options.max_staleness) {
   const Eigen::Matrix3Xd& X = solver->body().mesh.nodes;
   diagonal = (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm();
+  at_rest = body.pose();
   last_intensity = Eigen::VectorXd::Zero(num_components());
 }
 
@@ -197,7 +198,10 @@ ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observati
     s.last_intensity = estimate.intensity;
     s.walk_covariance = estimate.covariance;
   } else {
-    s.body.Return(before);
+    // A linear step may have left a shape from which there is no next one: begin again.
+    const bool stuck = s.options.method == EstimationMethod::kLinearStep &&
+                       estimate.status == ForceEstimate::Status::kNotConverged;
+    s.body.Return(stuck ? s.at_rest : before);
   }
   return estimate;
 }

@@ -69,6 +69,7 @@ struct ForceEstimator::State {
   std::vector<ActuatorUncertainty> actuators;
   geometry::Matrix6d registration_covariance = geometry::Matrix6d::Zero();
   LoadedBody body;
+  LoadedBody::Pose at_rest;
   double diagonal = NAN;  // m, of the body at rest
 
   Eigen::VectorXd last_intensity;   // N, of the last usable estimate

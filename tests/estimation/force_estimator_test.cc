@@ -169,7 +169,8 @@ TEST(ForceEstimator, SaysThatForcesCannotBeToldApart) {
   const ForceEstimate estimate = estimator.Estimate(bar.Observe(bar.Load(force), kNoise), {});
 
   EXPECT_EQ(estimate.status, ForceEstimate::Status::kUnobservable) << estimate.BriefReport();
-  EXPECT_NE(estimate.reason.find("candidate tip, candidate tip"), std::string::npos) << estimate.reason;
+  EXPECT_NE(estimate.reason.find("candidate tip, candidate tip"), std::string::npos)
+      << estimate.reason;
 }
 
 TEST(ForceEstimator, RefusesOptionsOutOfRange) {
