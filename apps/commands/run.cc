@@ -7,6 +7,7 @@
 
 #include "commands/commands.h"
 #include "softforce/base/input_error.h"
+#include "softforce/base/quantity.h"
 #include "softforce/pipeline/run.h"
 
 namespace softforce::apps {
@@ -26,6 +27,7 @@ struct RunArguments {
   std::vector<std::string> cameras;
   std::string frames;
   std::string correct_mesh = "none";
+  std::string method, force_walk;
   bool no_overlay = false;
   pipeline::RunOptions options;
 };
@@ -62,8 +64,23 @@ pipeline::MeshAim ParseMeshAim(const std::string& name) {
                          "Write for example: --correct-mesh refined");
 }
 
+estimation::EstimationMethod ParseMethod(const std::string& name) {
+  using estimation::EstimationMethod;
+  for (const auto method : {EstimationMethod::kConverged, EstimationMethod::kLinearStep}) {
+    if (name == estimation::Name(method)) return method;
+  }
+  throw base::InputError("--method", fmt::format("got \"{}\", expected converged or linear", name),
+                         "Write for example: --method linear");
+}
+
 int Run(RunArguments* arguments) {
   pipeline::RunOptions& options = arguments->options;
+  estimation::EstimatorOptions& estimator = options.tracker.estimator;
+  estimator.method = ParseMethod(arguments->method);
+  if (!arguments->force_walk.empty()) {
+    estimator.force_walk =
+        base::ParseQuantity(arguments->force_walk, base::Dimension::kForce, 1, "--force-walk")[0];
+  }
   options.out = arguments->out;
   options.overlay = !arguments->no_overlay;
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
@@ -110,6 +127,14 @@ Command AddRun(CLI::App* program) {
          "Model error of each marker by itself, as a share of the largest marker displacement "
          "(standard deviation)")
       ->capture_default_str();
+  arguments->method = estimation::Name(arguments->options.tracker.estimator.method);
+  app->add_option("--method", arguments->method,
+                  "converged: forces and equilibrium converge in every frame; linear: the paper's "
+                  "single linear step per frame, plain least squares, for comparison")
+      ->capture_default_str();
+  app->add_option("--force-walk", arguments->force_walk,
+                  "How far a force component may go from one frame to the next (standard "
+                  "deviation), as \"0.05 N\": smooths noise; default: any way");
   app->add_option(
          "--correct-mesh", arguments->correct_mesh,
          "Correct the mesh's own error as far as the once refined mesh shows it (refined), "

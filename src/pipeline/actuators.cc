@@ -61,6 +61,17 @@ std::vector<fem::Chamber> Chambers(const scene::Scene& scene, const mesh::TetMes
   return chambers;
 }
 
+std::vector<estimation::ActuatorUncertainty> Uncertainties(const scene::Scene& scene) {
+  std::vector<estimation::ActuatorUncertainty> uncertainties;
+  for (const scene::ActuatorType type :
+       {scene::ActuatorType::kCable, scene::ActuatorType::kPressure}) {
+    for (const scene::Actuator& actuator : scene.actuators) {
+      if (actuator.type == type) uncertainties.push_back(actuator.uncertainty);
+    }
+  }
+  return uncertainties;
+}
+
 fem::Actuation ActuationAt(const scene::Scene& scene, double time_s) {
   fem::Actuation actuation;
   if (scene.actuators.empty()) return actuation;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "softforce/estimation/observation.h"
 #include "softforce/fem/body.h"
 #include "softforce/mesh/surface.h"
 #include "softforce/scene/scene.h"
@@ -14,5 +15,8 @@ std::vector<fem::Cable> Cables(const scene::Scene& scene, const mesh::TetMesh& m
                                const mesh::Surface& surface);
 std::vector<fem::Chamber> Chambers(const scene::Scene& scene, const mesh::TetMesh& mesh,
                                    const mesh::Surface& surface);
+
+// How well each actuator's input is known, cables then chambers, as in fem::Body.
+std::vector<estimation::ActuatorUncertainty> Uncertainties(const scene::Scene& scene);
 
 }  // namespace softforce::pipeline

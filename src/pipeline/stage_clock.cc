@@ -21,7 +21,8 @@ std::vector<StageClock::Percentiles> StageClock::Report() const {
     const auto at = [&times = times](double share) {
       return times[static_cast<size_t>(std::lround(share * static_cast<double>(times.size() - 1)))];
     };
-    report.push_back({name, static_cast<int>(times.size()), at(0.5), at(0.95), times.back()});
+    report.push_back(
+        {name, static_cast<int>(times.size()), at(0.5), at(0.9), at(0.95), at(0.99), times.back()});
   }
   return report;
 }

@@ -20,7 +20,7 @@ class StageClock {
   struct Percentiles {
     std::string stage;
     int count = 0;
-    double median_ms = 0, p95_ms = 0, max_ms = 0;
+    double median_ms = 0, p90_ms = 0, p95_ms = 0, p99_ms = 0, max_ms = 0;
   };
   std::vector<Percentiles> Report() const;  // in the order of first use
 

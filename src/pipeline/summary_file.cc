@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "pipeline/result_tables.h"
@@ -70,21 +71,24 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
 
   json["seconds"] = facts.report.seconds;
   for (const StageClock::Percentiles& stage : facts.stages) {
-    json["stages_ms"][stage.stage] = {{"count", stage.count},
-                                      {"median", stage.median_ms},
-                                      {"p95", stage.p95_ms},
-                                      {"max", stage.max_ms}};
+    json["stages_ms"][stage.stage] = {{"count", stage.count}, {"median", stage.median_ms},
+                                      {"p90", stage.p90_ms},  {"p95", stage.p95_ms},
+                                      {"p99", stage.p99_ms},  {"max", stage.max_ms}};
   }
   const RunOptions& options = facts.options;
   json["options"] = {{"first_frame", options.first_frame},
                      {"registration_frames", options.registration_frames},
                      {"overlay", options.overlay},
                      {"vtu", options.vtu},
+                     {"method", estimation::Name(options.tracker.estimator.method)},
                      {"common_model_error", options.tracker.estimator.common_model_error},
                      {"local_model_error", options.tracker.estimator.local_model_error},
                      {"motion_share", options.tracker.motion_share}};
   if (options.end_frame != std::numeric_limits<int>::max()) {
     json["options"]["end_frame"] = options.end_frame;
+  }
+  if (std::isfinite(options.tracker.estimator.force_walk)) {
+    json["options"]["force_walk_N"] = options.tracker.estimator.force_walk;
   }
   for (const std::filesystem::path& input : facts.inputs) {
     json["inputs"].push_back(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/actuators.h"
 #include "softforce/base/input_error.h"
 
 namespace softforce::pipeline {
@@ -30,7 +31,7 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
       T_rig_robot_(T_rig_robot),
       options_(options),
       features_(scene, world),
-      estimator_(world.solver.get(), world.sites, options.estimator),
+      estimator_(world.solver.get(), world.sites, options.estimator, Uncertainties(scene)),
       intensity_covariance_(
           Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
   options_.Check();
@@ -123,7 +124,8 @@ FrameResult Tracker::Process(int frame, double time_s,
                              estimator_.state().shortening(i)});
   }
   for (size_t k = 0; k < actuation.pressures.size(); ++k) {
-    result.chambers.push_back({world_.solver->body().chambers[k].name, actuation.pressures[k]});
+    result.chambers.push_back(
+        {world_.solver->body().chambers[k].name, estimator_.state().load.actuation.pressures[k]});
   }
   return result;
 }

@@ -156,6 +156,7 @@ World BuildWorld(const scene::Scene& scene, mesh::TetMesh mesh) {
         {std::to_string(candidate.id),
          mesh::PatchWeights(world.surface, body.mesh.nodes, point.at, scene.forces.patch),
          Directions(candidate, mesh::Normal(world.surface, body.mesh.nodes, point.at))});
+    if (candidate.direction == scene::ForceDirection::kNormal) world.sites.back().lowest = 0;
   }
   for (const scene::MarkerPoint& marker : scene.markers.points) {
     world.markers.push_back(PlaceOnSurface(world.surface, body.mesh.nodes, marker.position,

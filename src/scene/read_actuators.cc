@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "scene/sections.h"
 
 namespace softforce::scene {
@@ -29,6 +31,19 @@ void ReadChamber(YamlMap& map, Actuator& chamber) {
       map.Required("group", "It is the surface group of the mesh that is pressed on.").Text();
 }
 
+double ReadUncertainty(const YamlValue& value, ActuatorInput input) {
+  if (value.Text() == "unknown") return std::numeric_limits<double>::infinity();
+  switch (input) {
+    case ActuatorInput::kTension:
+      return value.PositiveQuantity(Dimension::kForce);
+    case ActuatorInput::kDisplacement:
+      return value.PositiveQuantity(Dimension::kLength);
+    case ActuatorInput::kPressure:
+      return value.PositiveQuantity(Dimension::kPressure);
+  }
+  return 0;
+}
+
 Actuator ReadActuator(YamlMap& map) {
   Actuator actuator;
   actuator.name = map.Required("name").Text();
@@ -38,6 +53,9 @@ Actuator ReadActuator(YamlMap& map) {
     ReadCable(map, actuator);
   } else {
     ReadChamber(map, actuator);
+  }
+  if (const auto uncertainty = map.Optional("uncertainty")) {
+    actuator.uncertainty = ReadUncertainty(*uncertainty, actuator.input);
   }
   return actuator;
 }

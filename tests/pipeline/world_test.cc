@@ -61,6 +61,15 @@ TEST(BuildWorld, RaisesTheOrderAndHoldsTheCorners) {
   }
 }
 
+TEST(BuildWorld, LetsANormalForceOnlyPush) {
+  scene::Scene scene = Demo();
+  scene.forces.candidates[0].direction = scene::ForceDirection::kNormal;
+  const World world = BuildWorld(scene);
+  EXPECT_EQ(world.sites[0].lowest, 0);
+  EXPECT_GT(world.sites[0].directions(2, 0), 0.99);  // into the sheet, from below
+  EXPECT_EQ(world.sites[1].lowest, -INFINITY);
+}
+
 TEST(BuildWorld, LowersTheOrderWhenAsked) {
   scene::Scene scene = Demo();
   scene.mesh.order = 1;

@@ -69,6 +69,18 @@ TEST(LoadScene, ReadsActuatorsInTheirOrder) {
   EXPECT_EQ(scene.actuators[2].group, "cavity");
 }
 
+TEST(LoadScene, ReadsHowWellActuatorsAreKnown) {
+  const auto with = [](const std::string& from, const std::string& to) {
+    return LoadText(Replaced(kSceneText, from, to)).actuators;
+  };
+  EXPECT_EQ(LoadText(kSceneText).actuators[0].uncertainty, 0);
+  EXPECT_DOUBLE_EQ(with("patch: 6 mm}", "uncertainty: 0.2 mm}")[0].uncertainty, 2e-4);
+  EXPECT_DOUBLE_EQ(with("input: tension}", "input: tension, uncertainty: 0.1 N}")[1].uncertainty,
+                   0.1);
+  EXPECT_EQ(with("group: cavity}", "group: cavity, uncertainty: unknown}")[2].uncertainty,
+            INFINITY);
+}
+
 TEST(LoadScene, ReadsMarkers) {
   const Markers markers = LoadText(kSceneText).markers;
 

@@ -220,6 +220,13 @@ TEST(SceneRefusal, KeepsInputsToTheirActuators) {
             "scene.yaml:16: actuators[2]: input: got \"tension\", expected pressure");
 }
 
+TEST(SceneRefusal, WantsAnUncertaintyInTheActuatorsUnit) {
+  EXPECT_THAT(SceneRefusal("input: tension", "input: tension, uncertainty: 1 mm"),
+              HasSubstr("actuators[1]: uncertainty: \"1 mm\": got the unit \"mm\" of a length, expected a force"));
+  EXPECT_THAT(SceneRefusal("input: tension", "input: tension, uncertainty: 0 N"),
+              HasSubstr("actuators[1]: uncertainty"));
+}
+
 TEST(SceneRefusal, WantsPointsAndGuideOfACable) {
   EXPECT_THAT(SceneRefusal("points: [-20 0 45 mm], ", ""), HasSubstr("missing key \"points\""));
   EXPECT_THAT(SceneRefusal("guide: 0 0 5 mm, input: tension", "input: tension"),

@@ -40,6 +40,9 @@ struct Actuator {
   Eigen::Vector3d guide = Eigen::Vector3d::Constant(NAN);  // m, fixed in space
   double patch = 0;   // m, diameter over which the attachment is spread
   std::string group;  // pressure: the surface group it acts on
+  // Standard deviation of what it does about its input, N, m or Pa: 0 for an exact input, infinity
+  // for one that is not known at all.
+  double uncertainty = 0;
 };
 
 // Inputs of the actuators over time; held before the first row and after the last.
