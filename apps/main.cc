@@ -17,7 +17,8 @@ int RunProgram(int argc, char** argv) {
   program.set_version_flag("--version", std::string("softforce ") + softforce::base::kVersion);
   program.require_subcommand(1);
   const std::vector<softforce::apps::Command> commands{softforce::apps::AddRun(&program),
-                                                       softforce::apps::AddMesh(&program)};
+                                                       softforce::apps::AddMesh(&program),
+                                                       softforce::apps::AddSimulate(&program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

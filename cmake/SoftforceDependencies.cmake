@@ -16,7 +16,7 @@ find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
 
-# These ship no usable CMake package: SuiteSparse 5.12, OpenBLAS's own thread control, AprilTag, Gmsh.
+# These ship no usable CMake package: SuiteSparse 5.12, OpenBLAS's own thread control, AprilTag, Gmsh, FFmpeg.
 function(softforce_import name header library)
   find_path(${library}_INCLUDE_DIR ${header} REQUIRED ${ARGN})
   find_library(${library}_LIBRARY ${library} REQUIRED)
@@ -30,6 +30,11 @@ softforce_import(AprilTag::AprilTag apriltag.h apriltag PATH_SUFFIXES apriltag)
 find_library(apriltag-utils_LIBRARY apriltag-utils REQUIRED)
 target_link_libraries(AprilTag::AprilTag INTERFACE ${apriltag-utils_LIBRARY})
 softforce_import(Gmsh::Gmsh gmsh.h gmsh)
+softforce_import(FFmpeg::FFmpeg libavcodec/avcodec.h avcodec)  # its headers come with libopencv-dev
+foreach(library avformat avutil)
+  find_library(${library}_LIBRARY ${library} REQUIRED)
+  target_link_libraries(FFmpeg::FFmpeg INTERFACE ${${library}_LIBRARY})
+endforeach()
 
 if(SOFTFORCE_BUILD_TESTS)
   find_package(GTest REQUIRED)

@@ -14,5 +14,6 @@ struct Command {
 
 Command AddMesh(CLI::App* program);
 Command AddRun(CLI::App* program);
+Command AddSimulate(CLI::App* program);
 
 }  // namespace softforce::apps

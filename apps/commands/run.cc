@@ -1,25 +1,16 @@
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <map>
 #include <memory>
 
 #include "commands/commands.h"
+#include "commands/stop.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/quantity.h"
 #include "softforce/pipeline/run.h"
 
 namespace softforce::apps {
 namespace {
-
-std::atomic<bool> stop_asked{false};
-
-// Ctrl-C ends after the current frame, with complete files; a second one ends at once.
-void AskToStop(int signal) {
-  stop_asked = true;
-  std::signal(signal, SIG_DFL);
-}
 
 struct RunArguments {
   std::string scene;
@@ -93,9 +84,7 @@ int Run(RunArguments* arguments) {
     }
     options.sources[camera.substr(0, equals)] = camera.substr(equals + 1);
   }
-  options.stop = &stop_asked;
-  std::signal(SIGINT, AskToStop);
-  std::signal(SIGTERM, AskToStop);
+  options.stop = StopOnSignal();
   const pipeline::RunReport report = pipeline::Run(arguments->scene, options);
   fmt::print("{}", report.FullReport());
   return report.usable ? 0 : 1;

@@ -41,6 +41,8 @@ constexpr Unit kUnits[] = {
     {"mm/s^2", Dimension::kAcceleration, 1e-3},
     {"s", Dimension::kTime, 1},
     {"ms", Dimension::kTime, 1e-3},
+    {"Hz", Dimension::kFrequency, 1},
+    {"kHz", Dimension::kFrequency, 1e3},
     {"rad", Dimension::kAngle, 1},
     {"mrad", Dimension::kAngle, 1e-3},
     {"deg", Dimension::kAngle, kDegree},
@@ -69,6 +71,8 @@ Kind KindOf(Dimension dimension) {
       return {"an acceleration", "9.81", "m/s^2"};
     case Dimension::kTime:
       return {"a time", "0.1", "s"};
+    case Dimension::kFrequency:
+      return {"a rate", "30", "Hz"};
     case Dimension::kAngle:
       return {"an angle", "30", "deg"};
   }

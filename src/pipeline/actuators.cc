@@ -72,13 +72,12 @@ std::vector<estimation::ActuatorUncertainty> Uncertainties(const scene::Scene& s
   return uncertainties;
 }
 
-fem::Actuation ActuationAt(const scene::Scene& scene, double time_s) {
+fem::Actuation ActuationOf(const std::vector<scene::Actuator>& actuators,
+                           const Eigen::VectorXd& inputs) {
   fem::Actuation actuation;
-  if (scene.actuators.empty()) return actuation;
-  const Eigen::VectorXd inputs = scene.actuation.At(time_s);
-  for (size_t a = 0; a < scene.actuators.size(); ++a) {
+  for (size_t a = 0; a < actuators.size(); ++a) {
     const double value = inputs(static_cast<Eigen::Index>(a));
-    switch (scene.actuators[a].input) {
+    switch (actuators[a].input) {
       case scene::ActuatorInput::kTension:
         actuation.cables.push_back({fem::CableInput::kTension, value});
         break;
@@ -91,6 +90,11 @@ fem::Actuation ActuationAt(const scene::Scene& scene, double time_s) {
     }
   }
   return actuation;
+}
+
+fem::Actuation ActuationAt(const scene::Scene& scene, double time_s) {
+  if (scene.actuators.empty()) return {};
+  return ActuationOf(scene.actuators, scene.actuation.At(time_s));
 }
 
 }  // namespace softforce::pipeline

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "softforce/estimation/observation.h"
-#include "softforce/fem/body.h"
+#include "softforce/fem/static_solver.h"
 #include "softforce/mesh/surface.h"
 #include "softforce/scene/scene.h"
 
@@ -18,5 +18,9 @@ std::vector<fem::Chamber> Chambers(const scene::Scene& scene, const mesh::TetMes
 
 // How well each actuator's input is known, cables then chambers, as in fem::Body.
 std::vector<estimation::ActuatorUncertainty> Uncertainties(const scene::Scene& scene);
+
+// What they are told by one number each; N, m or Pa.
+fem::Actuation ActuationOf(const std::vector<scene::Actuator>& actuators,
+                           const Eigen::VectorXd& inputs);
 
 }  // namespace softforce::pipeline

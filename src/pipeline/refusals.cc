@@ -7,19 +7,22 @@
 namespace softforce::pipeline {
 namespace {
 
-void ClearOldResults(const std::filesystem::path& out) {
-  std::vector<std::filesystem::path> old;
-  for (const char* name : {"forces.csv", "markers.csv", "actuation.csv", "summary.json",
-                           "overlay.mp4", "results.pvd"}) {
-    old.push_back(out / name);
-  }
+std::vector<std::string> OldResults(const std::filesystem::path& out) {
+  std::vector<std::string> old{"forces.csv",   "markers.csv", "actuation.csv",
+                               "summary.json", "overlay.mp4", "results.pvd"};
   std::error_code ignored;  // a folder that is not there has no old frames
   for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {
     const std::string name = entry.path().filename().string();
-    if (name.rfind("frame_", 0) == 0 && entry.path().extension() == ".vtu")
-      old.push_back(entry.path());
+    if (name.rfind("frame_", 0) == 0 && entry.path().extension() == ".vtu") {
+      old.push_back("vtu/" + name);
+    }
   }
-  for (const std::filesystem::path& file : old) {
+  return old;
+}
+
+void Remove(const std::filesystem::path& out, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const std::filesystem::path file = out / name;
     std::error_code error;
     std::filesystem::remove(file, error);
     if (!error) continue;
@@ -79,9 +82,11 @@ void RefuseToOverwrite(const std::vector<std::filesystem::path>& inputs,
   }
 }
 
-void PrepareFolder(const std::filesystem::path& out) {
+void PrepareFolder(const std::filesystem::path& out) { PrepareFolder(out, OldResults(out)); }
+
+void PrepareFolder(const std::filesystem::path& out, const std::vector<std::string>& names) {
   MakeFolder(out);
-  ClearOldResults(out);
+  Remove(out, names);
 }
 
 }  // namespace softforce::pipeline

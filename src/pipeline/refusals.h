@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "softforce/scene/scene.h"
@@ -24,5 +25,8 @@ void RefuseToOverwrite(const std::vector<std::filesystem::path>& inputs,
 // Makes the folder for the results and removes what an earlier run left there under the same names,
 // so that a run that ends early cannot be mistaken for a complete one.
 void PrepareFolder(const std::filesystem::path& out);
+
+// Makes the folder and removes the files of these names from it.
+void PrepareFolder(const std::filesystem::path& out, const std::vector<std::string>& names);
 
 }  // namespace softforce::pipeline

@@ -63,6 +63,8 @@ bool NamesRegions(const YamlValue& material) {
   });
 }
 
+}  // namespace
+
 std::map<std::string, fem::Material> ReadMaterials(const YamlValue& value) {
   if (!NamesRegions(value)) return {{"", value.ReadMap(ReadMaterial)}};
   return value.ReadMap([](YamlMap& regions) {
@@ -73,6 +75,8 @@ std::map<std::string, fem::Material> ReadMaterials(const YamlValue& value) {
     return materials;
   });
 }
+
+namespace {
 
 FixedRegion ReadFixedRegion(YamlMap& map) {
   FixedRegion region;

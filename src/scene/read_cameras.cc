@@ -15,7 +15,8 @@ std::string ReadSource(const YamlValue& value, SceneFiles files) {
   std::error_code ignored;  // a pipeline may be too long for a file's name
   const bool is_file = std::filesystem::is_regular_file(value.Path(), ignored);
   if (!is_file && LooksLive(value.Text())) return value.Text();
-  return FileOf(value, files).string();
+  const bool needed = files == SceneFiles::kAll;
+  return (needed ? value.ExistingFile() : value.Path()).string();
 }
 
 std::map<std::string, std::string> ReadSources(YamlMap& map, SceneFiles files) {

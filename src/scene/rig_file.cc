@@ -6,7 +6,7 @@
 #include <array>
 #include <fstream>
 
-#include "scene/yaml_reader.h"
+#include "scene/sections.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
 #include "softforce/geometry/rigid.h"
@@ -15,6 +15,8 @@ namespace softforce::scene {
 namespace {
 
 constexpr double kMaxRotationDefect = 1e-6;
+
+}  // namespace
 
 Eigen::Isometry3d ReadTransform(const YamlValue& value) {
   Eigen::Matrix4d T;
@@ -34,6 +36,8 @@ Eigen::Isometry3d ReadTransform(const YamlValue& value) {
   }
   return Eigen::Isometry3d(T);
 }
+
+namespace {
 
 camera::BrownConrady ReadLens(YamlMap& map) {
   map.Required("model").Choice<bool>({{"brown_conrady", true}});  // the only one so far
@@ -65,7 +69,7 @@ camera::Camera ReadCamera(YamlMap& map) {
   return camera;
 }
 
-std::vector<camera::Camera> ReadCameras(YamlMap& map) {
+std::vector<camera::Camera> ReadRigCameras(YamlMap& map) {
   std::vector<camera::Camera> cameras;
   for (const std::string& name : map.Keys()) {
     cameras.push_back(map.Required(name).ReadMap(ReadCamera));
@@ -107,7 +111,7 @@ std::string ToYaml(const camera::Camera& camera) {
 camera::Rig LoadRig(const std::filesystem::path& file) {
   return ReadYamlFile(file, [](YamlMap& root) {
     camera::Rig rig;
-    rig.cameras = root.Required("cameras").ReadMap(ReadCameras);
+    rig.cameras = root.Required("cameras").ReadMap(ReadRigCameras);
     if (const auto T = root.Optional("T_rig_robot")) rig.T_rig_robot = ReadTransform(*T);
     return rig;
   });

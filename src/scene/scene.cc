@@ -52,6 +52,10 @@ Scene LoadScene(const std::filesystem::path& file, SceneFiles files) {
     scene.cameras =
         root.Required("cameras").ReadMap([&](YamlMap& map) { return ReadCameras(map, files); });
     RefuseSharedTags(scene, root.value());
+    if (const auto simulation = root.Optional("simulation")) {
+      scene.simulation =
+          simulation->ReadMap([&](YamlMap& map) { return ReadSimulation(map, files, scene); });
+    }
     return scene;
   });
 }

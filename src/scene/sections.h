@@ -7,8 +7,9 @@
 
 namespace softforce::scene {
 
+// A file that belongs to the scene itself.
 inline std::filesystem::path FileOf(const YamlValue& value, SceneFiles files) {
-  return files == SceneFiles::kAll ? value.ExistingFile() : value.Path();
+  return files == SceneFiles::kNone ? value.Path() : value.ExistingFile();
 }
 
 // The sections of a scene file.
@@ -18,6 +19,11 @@ std::vector<Actuator> ReadActuators(const YamlValue& actuators);
 Markers ReadMarkers(YamlMap& markers);
 Forces ReadForces(YamlMap& forces);
 Cameras ReadCameras(YamlMap& cameras, SceneFiles files);
+Simulation ReadSimulation(YamlMap& simulation, SceneFiles files, const Scene& scene);
+
+// One material for the whole body, called "", or one for each region.
+std::map<std::string, fem::Material> ReadMaterials(const YamlValue& materials);
+Eigen::Isometry3d ReadTransform(const YamlValue& transform);  // 4×4, metres
 
 // The CSV table named by "actuation", its columns sorted like `actuators`. Throws InputError naming
 // file, line and column.

@@ -1,49 +1,19 @@
 #include "softforce/vision/tags.h"
 
 #include <apriltag.h>
-#include <fmt/format.h>
-#include <tag16h5.h>
-#include <tag25h9.h>
-#include <tag36h11.h>
-#include <tagStandard41h12.h>
 
 #include <algorithm>
 #include <array>
 
 #include "softforce/base/input_error.h"
 #include "vision/tag_edges.h"
+#include "vision/tag_family.h"
 
 namespace softforce::vision {
 namespace {
 
 // AprilTag 3 has the pixel CORNER at (0, 0); the project, like OpenCV, the pixel CENTRE.
 constexpr double kHalfPixel = 0.5;
-
-// How a tag stands upright is a matter of convention: OpenCV draws the classic families turned by
-// half a turn against AprilTag's own pictures. OpenCV's way holds here; families that it does not
-// draw stand as AprilTag draws them.
-struct FamilyMaker {
-  const char* name;
-  bool turned_by_opencv;
-  apriltag_family_t* (*create)();
-  void (*destroy)(apriltag_family_t*);
-};
-constexpr std::array<FamilyMaker, 4> kFamilies{{
-    {"tag36h11", true, tag36h11_create, tag36h11_destroy},
-    {"tag25h9", true, tag25h9_create, tag25h9_destroy},
-    {"tag16h5", true, tag16h5_create, tag16h5_destroy},
-    {"tagStandard41h12", false, tagStandard41h12_create, tagStandard41h12_destroy},
-}};
-
-const FamilyMaker& MakerOf(const std::string& family) {
-  std::string known;
-  for (const FamilyMaker& maker : kFamilies) {
-    if (family == maker.name) return maker;
-    known += std::string(known.empty() ? "" : ", ") + maker.name;
-  }
-  throw base::InputError("tag family",
-                         fmt::format("\"{}\" is not known; expected one of {}", family, known));
-}
 
 }  // namespace
 

@@ -35,6 +35,7 @@ TEST(ParseQuantity, ConvertsEveryKindToSi) {
   EXPECT_DOUBLE_EQ(Parse("1.07 g/cm^3", Dimension::kDensity), 1070);
   EXPECT_DOUBLE_EQ(Parse("-9810 mm/s^2", Dimension::kAcceleration), -9.81);
   EXPECT_DOUBLE_EQ(Parse("20 ms", Dimension::kTime), 20e-3);
+  EXPECT_DOUBLE_EQ(Parse("29.97 Hz", Dimension::kFrequency), 29.97);
   EXPECT_DOUBLE_EQ(Parse("180 deg", Dimension::kAngle), std::acos(-1.0));
   EXPECT_DOUBLE_EQ(Parse("0.45", Dimension::kNumber), 0.45);
 }

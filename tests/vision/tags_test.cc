@@ -14,12 +14,10 @@ namespace softforce::vision {
 namespace {
 
 using softforce::testing::Corners;
-using softforce::testing::DrawTag;
 using softforce::testing::PaintBox;
 using softforce::testing::PaintTag;
 using softforce::testing::SquareAt;
 using softforce::testing::SyntheticScene;
-using softforce::testing::TagCells;
 using ::testing::HasSubstr;
 
 constexpr double kGround = 220;  // grey levels; a tag's own paper

@@ -14,6 +14,7 @@ enum class Dimension {
   kDensity,
   kAcceleration,
   kTime,
+  kFrequency,
   kAngle
 };
 

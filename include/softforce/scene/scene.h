@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -10,6 +11,9 @@
 #include "softforce/calibration/register.h"
 #include "softforce/camera/rig.h"
 #include "softforce/fem/material.h"
+#include "softforce/render/picture.h"
+#include "softforce/simulation/measure.h"
+#include "softforce/simulation/scenery.h"
 
 namespace softforce::scene {
 
@@ -89,6 +93,52 @@ struct Cameras {
   std::vector<calibration::Fiducial> fiducials;
 };
 
+// A force of a simulated recording over time.
+struct SimulatedForce {
+  std::string name;
+  Eigen::Vector3d position;    // m, body at rest
+  std::vector<double> time_s;  // ascending
+  Eigen::MatrixXd force;       // N, a row of x y z per time; held before the first, after the last
+
+  Eigen::Vector3d At(double time) const;  // linear between the times
+};
+
+// Where the rig of a simulated recording stands, if its file does not say so.
+struct SimulatedStand {
+  Eigen::Vector3d position;  // m, robot frame, of the first camera
+  Eigen::Vector3d looks_at;  // what is in the middle of its picture
+};
+
+// How a recording with truth is made of a scene, apart from what the estimator assumes.
+struct Simulation {
+  std::uint32_t seed = 1;
+  int frames = 30;
+  double rate = 30;  // Hz
+  // The body of the direct problem.
+  std::optional<std::filesystem::path> mesh_file;  // nothing: the scene's mesh
+  double metres_per_unit = NAN;                    // of mesh_file
+  int order = 2;                                   // 1 or 2
+  int refine = 1;                                  // times that every cell is cut into 8
+  std::map<std::string, fem::Material> materials;  // as the scene's; empty: the scene's
+  // What acts on it.
+  std::vector<SimulatedForce> forces;
+  std::optional<ActuationTable> actuation;         // nothing: the scene's
+  std::map<std::string, double> actuator_offsets;  // N, m or Pa more than told, by name
+  Eigen::Isometry3d T_robot_mesh = Eigen::Isometry3d::Identity();  // where the body really stands
+  // What is seen of it.
+  simulation::MeasureOptions markers;
+  std::optional<Eigen::Isometry3d> T_rig_robot;
+  std::optional<SimulatedStand> stand;
+  bool pictures = true;
+  render::PictureOptions picture;
+  bool light_given = false;                           // else it comes from where the cameras stand
+  Eigen::Vector3d tag_up = Eigen::Vector3d::UnitY();  // roughly; robot frame, body at rest
+  int strewn_decoys = 0;
+  std::vector<Eigen::Vector3d> decoys;  // m, on the body at rest
+  std::vector<simulation::Occluder> occluders;
+  double cable_diameter = 8e-4;  // m; 0: cables are not seen
+};
+
 struct Scene {
   std::filesystem::path file;
   std::string name;
@@ -103,12 +153,14 @@ struct Scene {
   Markers markers;
   Forces forces;
   Cameras cameras;
+  std::optional<Simulation> simulation;
 };
 
 // Which of the files that a scene names must be there.
 enum class SceneFiles {
   kAll,
-  kNone,  // to judge a mesh before anything is recorded; the actuation table is left empty
+  kNone,        // to judge a mesh before anything is recorded; the actuation table is left empty
+  kToSimulate,  // all but the recording, and those that the section "simulation" names
 };
 
 // Reads and checks a scene and its actuation table. Throws InputError naming file, key and line on

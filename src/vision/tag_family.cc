@@ -1,0 +1,35 @@
+#include "vision/tag_family.h"
+
+#include <fmt/format.h>
+#include <tag16h5.h>
+#include <tag25h9.h>
+#include <tag36h11.h>
+#include <tagStandard41h12.h>
+
+#include <array>
+
+#include "softforce/base/input_error.h"
+
+namespace softforce::vision {
+namespace {
+
+constexpr std::array<FamilyMaker, 4> kFamilies{{
+    {"tag36h11", true, tag36h11_create, tag36h11_destroy},
+    {"tag25h9", true, tag25h9_create, tag25h9_destroy},
+    {"tag16h5", true, tag16h5_create, tag16h5_destroy},
+    {"tagStandard41h12", false, tagStandard41h12_create, tagStandard41h12_destroy},
+}};
+
+}  // namespace
+
+const FamilyMaker& MakerOf(const std::string& family, const std::string& where) {
+  std::string known;
+  for (const FamilyMaker& maker : kFamilies) {
+    if (family == maker.name) return maker;
+    known += std::string(known.empty() ? "" : ", ") + maker.name;
+  }
+  throw base::InputError(where,
+                         fmt::format("\"{}\" is not known; expected one of {}", family, known));
+}
+
+}  // namespace softforce::vision

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <apriltag.h>
+
+#include <string>
+
+namespace softforce::vision {
+
+// How a tag stands upright is a matter of convention: OpenCV draws the classic families turned by
+// half a turn against AprilTag's own pictures. OpenCV's way holds here; families that it does not
+// draw stand as AprilTag draws them.
+struct FamilyMaker {
+  const char* name;
+  bool turned_by_opencv;
+  apriltag_family_t* (*create)();
+  void (*destroy)(apriltag_family_t*);
+};
+
+// Throws InputError, naming `where`, for an unknown family.
+const FamilyMaker& MakerOf(const std::string& family, const std::string& where = "tag family");
+
+}  // namespace softforce::vision
