@@ -17,6 +17,7 @@ int RunProgram(int argc, char** argv) {
   program.set_version_flag("--version", std::string("softforce ") + softforce::base::kVersion);
   program.require_subcommand(1);
   const std::vector<softforce::apps::Command> commands{softforce::apps::AddRun(&program),
+                                                       softforce::apps::AddIdentify(&program),
                                                        softforce::apps::AddMesh(&program),
                                                        softforce::apps::AddSimulate(&program)};
   try {

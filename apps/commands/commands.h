@@ -12,6 +12,7 @@ struct Command {
   std::function<int()> run;
 };
 
+Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pipeline/group_triangles.h"
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/interior_point.h"
@@ -94,7 +96,13 @@ fem::Actuation ActuationOf(const std::vector<scene::Actuator>& actuators,
 
 fem::Actuation ActuationAt(const scene::Scene& scene, double time_s) {
   if (scene.actuators.empty()) return {};
-  return ActuationOf(scene.actuators, scene.actuation.At(time_s));
+  Eigen::VectorXd inputs = scene.actuation.At(time_s);
+  for (size_t a = 0; a < scene.actuators.size(); ++a) {
+    double& input = inputs(static_cast<Eigen::Index>(a));
+    input += scene.actuators[a].offset;
+    if (scene.actuators[a].input == scene::ActuatorInput::kTension) input = std::max(input, 0.0);
+  }
+  return ActuationOf(scene.actuators, inputs);
 }
 
 }  // namespace softforce::pipeline

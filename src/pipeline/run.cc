@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "pipeline/mesh_correction.h"
+#include "pipeline/open_recording.h"
 #include "pipeline/overlay_video.h"
 #include "pipeline/refusals.h"
 #include "pipeline/registration.h"
@@ -25,16 +26,6 @@ namespace softforce::pipeline {
 namespace {
 
 constexpr int kMaxFrameWarnings = 20;  // about single frames; the rest is counted
-
-std::vector<vision::Recording::Source> Sources(const scene::Scene& scene,
-                                               const RunOptions& options) {
-  std::map<std::string, std::string> sources = scene.cameras.sources;
-  for (const auto& [camera, source] : options.sources) sources[camera] = source;
-  std::vector<vision::Recording::Source> files;
-  files.reserve(sources.size());
-  for (const auto& [camera, source] : sources) files.push_back({camera, source});
-  return files;
-}
 
 // I_w = ‖W_ef⁺‖₁ of the paper (VI.A) for the body at rest: how much an error of the markers can be
 // amplified.
@@ -70,8 +61,8 @@ class Job {
       : options_(options),
         scene_(scene::LoadScene(scene_file)),
         rig_(scene::LoadRig(scene_.cameras.rig)),
-        sources_(Sources(scene_, options)),
-        recording_(OpenRecording()),
+        sources_(SourcesOf(scene_, options.sources)),
+        recording_(Open()),
         correction_(CorrectionFor(scene_, options)),
         world_(correction_ ? BuildWorld(correction_->scene, correction_->mesh)
                            : BuildWorld(scene_)),
@@ -84,8 +75,7 @@ class Job {
   RunReport Finish();
 
  private:
-  vision::Recording OpenRecording() const;
-  std::vector<std::filesystem::path> Inputs() const;
+  vision::Recording Open() const;
   void ProcessFrames(ResultTables* tables, OverlayVideo* overlay, VtuSeries* series);
   FrameResult ProcessFrame(const vision::FrameSet& frame);
   void Judge();
@@ -111,25 +101,9 @@ class Job {
   std::vector<double> reduced_chi2_;  // of each frame with forces
 };
 
-vision::Recording Job::OpenRecording() const {
-  RefuseUnknownLocations(scene_);
-  RefuseLiveSources(scene_, sources_);
-  RefuseToOverwrite(Inputs(), options_.out);
-  vision::Recording recording(rig_, sources_);
-  const int announced = recording.announced_frames();
-  if (announced > 0 && options_.first_frame >= announced) {
-    throw base::InputError(
-        "--frames", fmt::format("starts at frame {}, but the recording has {} frames, 0 to {}",
-                                options_.first_frame, announced, announced - 1));
-  }
-  return recording;
-}
-
-std::vector<std::filesystem::path> Job::Inputs() const {
-  std::vector<std::filesystem::path> inputs{scene_.file, scene_.mesh.file, scene_.cameras.rig};
-  if (scene_.actuation_file) inputs.push_back(*scene_.actuation_file);
-  for (const vision::Recording::Source& source : sources_) inputs.push_back(source.file);
-  return inputs;
+vision::Recording Job::Open() const {
+  RefuseToOverwrite(InputsOf(scene_, sources_), options_.out);
+  return OpenRecording(scene_, rig_, sources_, options_.first_frame, "--frames");
 }
 
 FrameResult Job::ProcessFrame(const vision::FrameSet& frame) {
@@ -194,7 +168,7 @@ void Job::WriteSummaryFile() {
   RunFacts facts{scene_,          options_,         report_,
                  world_,          correction_,      standing_.from_fiducials,
                  frame_statuses_, marker_statuses_, index_w_,
-                 reduced_chi2_,   clock_.Report(),  Inputs()};
+                 reduced_chi2_,   clock_.Report(),  InputsOf(scene_, sources_)};
   WriteSummary(facts, options_.out / "summary.json");
 }
 

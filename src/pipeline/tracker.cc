@@ -22,6 +22,18 @@ void TrackerOptions::Check() const {
   }
 }
 
+geometry::Matrix6d InRobotFrame(const geometry::Matrix6d& rig_covariance,
+                                const Eigen::Isometry3d& T_rig_robot) {
+  // From a twist on the rig's side of T_rig_robot to one on the robot's side: the adjoint of its
+  // inverse.
+  const Eigen::Matrix3d R = T_rig_robot.linear().transpose();
+  const Eigen::Vector3d t = -(R * T_rig_robot.translation());
+  geometry::Matrix6d to_robot = geometry::Matrix6d::Zero();
+  to_robot.topLeftCorner<3, 3>() = to_robot.bottomRightCorner<3, 3>() = R;
+  to_robot.topRightCorner<3, 3>() = geometry::Skew(t) * R;
+  return to_robot * rig_covariance * to_robot.transpose();
+}
+
 Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Rig& rig,
                  const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance,
                  const TrackerOptions& options)
@@ -35,14 +47,7 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
       intensity_covariance_(
           Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
   options_.Check();
-  // From a twist on the rig's side of T_rig_robot to one on the robot's side: the adjoint of its
-  // inverse.
-  const Eigen::Matrix3d R = T_rig_robot_.linear().transpose();
-  const Eigen::Vector3d t = -(R * T_rig_robot_.translation());
-  geometry::Matrix6d to_robot = geometry::Matrix6d::Zero();
-  to_robot.topLeftCorner<3, 3>() = to_robot.bottomRightCorner<3, 3>() = R;
-  to_robot.topRightCorner<3, 3>() = geometry::Skew(t) * R;
-  estimator_.SetRegistrationCovariance(to_robot * rig_covariance * to_robot.transpose());
+  estimator_.SetRegistrationCovariance(InRobotFrame(rig_covariance, T_rig_robot_));
 }
 
 std::vector<PredictedFeature> Tracker::Predict() {
@@ -96,12 +101,14 @@ FrameResult Tracker::Process(int frame, double time_s,
 
   std::vector<estimation::Observation> observations;
   std::vector<size_t> feature_of;
+  observations_.clear();
   for (size_t f = 0; f < located.size(); ++f) {
     if (located[f].whitening.rows() == 0) continue;
     const BodyPoint& point = features_.features()[f].point;
     observations.push_back({point.weights, point.offset, located[f].position, located[f].whitening,
                             features_.features()[f].marker});
     feature_of.push_back(f);
+    observations_.push_back({static_cast<int>(f), observations.back()});
   }
   const estimation::ForceEstimate estimate = estimator_.Estimate(observations, actuation);
 

@@ -20,6 +20,10 @@ void ReadCable(YamlMap& map, Actuator& cable) {
   if (const auto patch = map.Optional("patch")) {
     cable.patch = patch->PositiveQuantity(Dimension::kLength);
   }
+  if (const auto offset = map.Optional("offset")) {
+    cable.offset = offset->Quantity(cable.input == ActuatorInput::kTension ? Dimension::kForce
+                                                                           : Dimension::kLength);
+  }
 }
 
 void ReadChamber(YamlMap& map, Actuator& chamber) {

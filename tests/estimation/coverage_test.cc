@@ -20,7 +20,7 @@ TEST_P(Coverage, OfThe95PercentIntervalsIsWhatTheySay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Coverage, ::testing::ValuesIn(CoverageCases()),
-                         [](const auto& info) { return "case" + std::to_string(info.index); });
+                         [](const auto& which) { return "case" + std::to_string(which.index); });
 
 }  // namespace
 }  // namespace softforce::testing

@@ -23,6 +23,17 @@ struct TrackerOptions {
   void Check() const;  // throws InputError naming the option
 };
 
+// Where a feature of a marker was measured.
+struct MarkerObservation {
+  int feature = -1;  // the same in all frames
+  estimation::Observation seen;
+};
+
+// The covariance of the rig's place as the estimator takes it, of a twist in the robot frame, from
+// that of one in the rig frame (see Tracker).
+geometry::Matrix6d InRobotFrame(const geometry::Matrix6d& rig_covariance,
+                                const Eigen::Isometry3d& T_rig_robot);
+
 // From detections to forces, frame after frame: predicts the features from the body's last state
 // and the new actuation, allocates detections to them, locates them, and estimates the forces.
 class Tracker {
@@ -37,6 +48,9 @@ class Tracker {
 
   const fem::Equilibrium& state() const { return estimator_.state(); }
 
+  // What the last frame's forces were estimated from, rejected ones included.
+  const std::vector<MarkerObservation>& observations() const { return observations_; }
+
  private:
   std::vector<PredictedFeature> Predict();
   std::vector<MarkerResult> MarkerResults(const std::vector<FeatureObservation>& observations,
@@ -50,6 +64,7 @@ class Tracker {
   TrackerOptions options_;
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;
+  std::vector<MarkerObservation> observations_;
   Eigen::MatrixXd intensity_covariance_;  // N²; grows by the random walk from frame to frame
   int frames_without_forces_ = 0;         // since the last usable one
 };

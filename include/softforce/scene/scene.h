@@ -42,7 +42,10 @@ struct Actuator {
   std::vector<Eigen::Vector3d>
       points;  // m, on the body: attachment first, then via points to the guide
   Eigen::Vector3d guide = Eigen::Vector3d::Constant(NAN);  // m, fixed in space
-  double patch = 0;   // m, diameter over which the attachment is spread
+  double patch = 0;  // m, diameter over which the attachment is spread
+  // m or N, of a cable: added to every input of the table. How much more the cable is really
+  // shortened or pulled than it is told.
+  double offset = 0;
   std::string group;  // pressure: the surface group it acts on
   // Standard deviation of what it does about its input, N, m or Pa: 0 for an exact input, infinity
   // for one that is not known at all.

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include "commands/commands.h"
+#include "softforce/base/input_error.h"
+#include "softforce/base/pending_file.h"
+#include "softforce/pipeline/identify.h"
+#include "softforce/pipeline/known_weights.h"
+
+namespace softforce::apps {
+namespace {
+
+using Kind = estimation::Unknown::Kind;
+
+std::atomic<bool> stop_asked{false};
+
+void AskToStop(int signal) {
+  stop_asked = true;
+  std::signal(signal, SIG_DFL);
+}
+
+struct IdentifyArguments {
+  std::string scene;
+  std::vector<std::string> cameras;
+  std::vector<std::string> unknowns{"youngs_modulus"};
+  std::string out;
+  bool in_place = false;
+  pipeline::IdentifyOptions options;
+};
+
+Kind ParseUnknown(const std::string& name) {
+  if (name == "youngs_modulus") return Kind::kYoungsModulus;
+  if (name == "poissons_ratio") return Kind::kPoissonsRatio;
+  if (name == "cable_offset") return Kind::kCableOffset;
+  throw base::InputError(
+      "--unknown",
+      fmt::format("got \"{}\", expected youngs_modulus, poissons_ratio or cable_offset", name),
+      "Write for example: --unknown youngs_modulus --unknown cable_offset");
+}
+
+// Where the scene with the new values goes; empty for nowhere.
+std::filesystem::path Target(const IdentifyArguments& arguments) {
+  if (!arguments.in_place) {
+    if (arguments.out.empty()) return {};
+    std::error_code ignored;  // a scene that is not there is refused when it is read
+    if (std::filesystem::equivalent(arguments.out, arguments.scene, ignored)) {
+      throw base::InputError("-o " + arguments.out, "is the scene itself",
+                             "Use --in-place if you want it changed.");
+    }
+    base::CheckCanWrite(arguments.out);
+    return arguments.out;
+  }
+  if (!arguments.out.empty()) {
+    throw base::InputError("--in-place", "got -o as well, expected one of them");
+  }
+  return arguments.scene;
+}
+
+int Identify(IdentifyArguments* arguments) {
+  pipeline::IdentifyOptions& options = arguments->options;
+  options.unknowns.clear();
+  for (const std::string& name : arguments->unknowns) {
+    options.unknowns.push_back(ParseUnknown(name));
+  }
+  for (const std::string& camera : arguments->cameras) {
+    const size_t equals = camera.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw base::InputError("--camera", fmt::format("got \"{}\", expected NAME=SOURCE", camera),
+                             "Example: --camera left=left.mp4");
+    }
+    options.sources[camera.substr(0, equals)] = camera.substr(equals + 1);
+  }
+  const std::filesystem::path target = Target(*arguments);
+  options.stop = &stop_asked;
+  std::signal(SIGINT, AskToStop);
+  std::signal(SIGTERM, AskToStop);
+  const pipeline::IdentifyReport report = pipeline::Identify(arguments->scene, options);
+  fmt::print("{}", report.FullReport());
+  if (!report.usable) return 1;
+  if (!target.empty()) {
+    scene::WriteChangedScene(arguments->scene, report.changes, target);
+    fmt::print("\nWritten: {}\n", target.string());
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command AddIdentify(CLI::App* program) {
+  auto arguments = std::make_shared<IdentifyArguments>();
+  CLI::App* app = program->add_subcommand(
+      "identify", "Find Young's modulus, and more, from frames with known weights");
+  app->add_option("scene", arguments->scene, "Scene file (scene.yaml)")->required();
+  app->add_option("--weights", arguments->options.weights, pipeline::kWeightsHelp)
+      ->required()
+      ->allow_extra_args(false);
+  app->add_option("--unknown", arguments->unknowns,
+                  "What to find: youngs_modulus, poissons_ratio or cable_offset; may be repeated")
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  app->add_flag("--per-region", arguments->options.per_region,
+                "A value for each material of the scene, instead of one change for all");
+  app->add_option("-o", arguments->out,
+                  "Scene file to write, with the values found and all else as it is");
+  app->add_flag("--in-place", arguments->in_place, "Write the values into the scene file itself");
+  app->add_option("--camera", arguments->cameras,
+                  "NAME=SOURCE: video file of a camera instead of the scene's; may be repeated")
+      ->allow_extra_args(false);
+  app->add_option("--registration-frames", arguments->options.registration_frames,
+                  "Frames searched for base fiducials to find where the cameras stand")
+      ->capture_default_str();
+  app->add_option("--common-model-error", arguments->options.tracker.estimator.common_model_error,
+                  "As for run: model error that shifts or turns all markers together, as a share "
+                  "of the largest marker displacement (standard deviation)")
+      ->capture_default_str();
+  app->add_option("--local-model-error", arguments->options.tracker.estimator.local_model_error,
+                  "As for run: model error of each marker by itself, as a share of the largest "
+                  "marker displacement (standard deviation)")
+      ->capture_default_str();
+  return {app, [arguments] { return Identify(arguments.get()); }};
+}
+
+}  // namespace softforce::apps

@@ -1,0 +1,254 @@
+#include "softforce/pipeline/identify.h"
+
+#include <fmt/format.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+#include <algorithm>
+
+#include "pipeline/known_states.h"
+#include "pipeline/open_recording.h"
+#include "pipeline/registration.h"
+#include "softforce/base/input_error.h"
+#include "softforce/base/progress.h"
+#include "softforce/scene/rig_file.h"
+
+namespace softforce::pipeline {
+namespace {
+
+using estimation::Unknown;
+using Kind = Unknown::Kind;
+
+constexpr int kMaxFrameWarnings = 5;  // about single frames
+
+// The regions of the mesh that are made of a material of the scene ("": all that have none of
+// their own).
+std::vector<int> RegionsOf(const scene::Scene& scene, const mesh::TetMesh& mesh,
+                           const std::string& material) {
+  std::vector<int> regions;
+  for (int r = 0; r < static_cast<int>(mesh.region_names.size()); ++r) {
+    const std::string& name = mesh.region_names[r];
+    const bool own = scene.materials.count(name) > 0;
+    if (own ? name == material : material.empty()) regions.push_back(r);
+  }
+  return regions;
+}
+
+std::string NameOf(Kind kind) {
+  switch (kind) {
+    case Kind::kYoungsModulus:
+      return "Young's modulus";
+    case Kind::kPoissonsRatio:
+      return "Poisson's ratio";
+    case Kind::kCableOffset:
+      return "offset";
+  }
+  return "";
+}
+
+std::vector<Unknown> MaterialUnknowns(const scene::Scene& scene, const mesh::TetMesh& mesh,
+                                      Kind kind, bool per_region) {
+  if (!per_region || scene.materials.size() == 1) return {{kind, NameOf(kind), {}, -1}};
+  std::vector<Unknown> unknowns;
+  for (const auto& [material, values] : scene.materials) {
+    unknowns.push_back(
+        {kind, NameOf(kind) + " of " + material, RegionsOf(scene, mesh, material), -1});
+  }
+  return unknowns;
+}
+
+std::vector<Unknown> CableUnknowns(const scene::Scene& scene) {
+  std::vector<Unknown> unknowns;
+  for (const scene::Actuator& actuator : scene.actuators) {
+    if (actuator.type != scene::ActuatorType::kCable) continue;
+    const int cable = static_cast<int>(unknowns.size());
+    unknowns.push_back({Kind::kCableOffset, "offset of " + actuator.name, {}, cable});
+  }
+  if (unknowns.empty()) {
+    throw base::InputError("--unknown cable_offset", "the scene has no cables");
+  }
+  return unknowns;
+}
+
+std::vector<Unknown> UnknownsOf(const scene::Scene& scene, const mesh::TetMesh& mesh,
+                                const IdentifyOptions& options) {
+  std::vector<Unknown> unknowns;
+  for (const Kind kind : options.unknowns) {
+    const std::vector<Unknown> more = kind == Kind::kCableOffset
+                                          ? CableUnknowns(scene)
+                                          : MaterialUnknowns(scene, mesh, kind, options.per_region);
+    unknowns.insert(unknowns.end(), more.begin(), more.end());
+  }
+  return unknowns;
+}
+
+int LastFrame(const std::vector<KnownWeights>& weights) {
+  int last = 0;
+  for (const KnownWeights& known : weights) last = std::max(last, known.end_frame - 1);
+  return last;
+}
+
+// An identification in progress.
+class Job {
+ public:
+  Job(const std::filesystem::path& scene_file, const IdentifyOptions& options)
+      : options_(options),
+        scene_(scene::LoadScene(scene_file)),
+        rig_(scene::LoadRig(scene_.cameras.rig)),
+        weights_(ParseWeights(options.weights, scene_)),
+        // All frames asked for must be there, so the last one is looked for.
+        recording_(OpenRecording(scene_, rig_, SourcesOf(scene_, options.sources),
+                                 LastFrame(weights_), "--weights")),
+        world_(BuildWorld(scene_)),
+        unknowns_(UnknownsOf(scene_, world_.mesh(), options)),
+        detector_(scene_),
+        standing_(FindRig(scene_, rig_, detector_, options.registration_frames, &recording_)),
+        known_(scene_, world_, weights_) {}
+
+  IdentifyReport Finish();
+
+ private:
+  bool PlayRecording();  // false if there is nothing to go on with
+  void Warn(const std::string& warning) { report_.warnings.push_back(warning); }
+  void EstimateForcesAgain(const std::vector<estimation::KnownState>& states);
+  scene::SceneChanges Changes() const;
+
+  const IdentifyOptions& options_;
+  const scene::Scene scene_;
+  const camera::Rig rig_;
+  const std::vector<KnownWeights> weights_;
+  vision::Recording recording_;
+  const World world_;
+  const std::vector<Unknown> unknowns_;
+  const Detector detector_;
+  const Standing standing_;
+  KnownStates known_;
+  IdentifyReport report_;
+};
+
+bool Job::PlayRecording() {
+  Tracker tracker(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
+                  options_.tracker);
+  base::Progress progress("frames", known_.end_frame());
+  int lost = 0, used = 0;
+  while (true) {
+    if (options_.stop != nullptr && *options_.stop) {
+      Warn("stopped before the last frame with known forces");
+      return false;
+    }
+    const auto frame = recording_.Next();
+    if (!frame || frame->frame >= known_.end_frame()) break;
+    // Also frames whose forces are not known: the markers are followed through them.
+    const FrameResult result =
+        tracker.Process(frame->frame, frame->time_s, detector_.Markers(*frame));
+    if (options_.show_progress) progress.Update(frame->frame + 1);
+    if (!known_.Wants(frame->frame)) continue;
+    if (!result.forces.empty()) {
+      ++used;
+      known_.Add(frame->frame, ActuationAt(scene_, frame->time_s), tracker.observations());
+    } else if (++lost <= kMaxFrameWarnings) {
+      Warn(fmt::format("frame {} is left out: {}: {}", frame->frame,
+                       estimation::Name(result.status), result.reason));
+    }
+  }
+  if (options_.show_progress) progress.Finish();
+  if (lost > kMaxFrameWarnings) Warn(fmt::format("{} frames are left out in all", lost));
+  if (!recording_.truncation().empty()) Warn(recording_.truncation());
+  if (used == 0) Warn("no frame with known forces could be used");
+  return used > 0 && recording_.truncation().empty();
+}
+
+// With the values found, what would a run say of these states?
+void Job::EstimateForcesAgain(const std::vector<estimation::KnownState>& states) {
+  fem::StaticSolver& solver = *world_.solver;
+  solver.SetMaterials(report_.found.materials);
+  for (size_t s = 0; s < states.size(); ++s) {
+    const KnownWeights& weights = known_.WeightsOf(static_cast<int>(s));
+    if (weights.forces.empty()) continue;
+    fem::Actuation actuation = states[s].actuation;
+    for (size_t c = 0; c < actuation.cables.size(); ++c) {
+      actuation.cables[c].value += report_.found.cable_offsets(static_cast<Eigen::Index>(c));
+    }
+    estimation::ForceEstimator estimator(&solver, world_.sites, options_.tracker.estimator);
+    estimator.SetRegistrationCovariance(InRobotFrame(standing_.covariance, standing_.T_rig_robot));
+    const bool advanced = estimator.Advance(actuation).ok();
+    const estimation::ForceEstimate estimate =
+        estimator.Estimate(states[s].observations, actuation);
+    for (const auto& [candidate, components] : weights.forces) {
+      KnownForce force{states[s].name, scene_.forces.candidates[candidate].id,
+                       world_.sites[candidate].directions * components,
+                       Eigen::Vector3d::Constant(NAN)};
+      if (advanced && estimate.ok()) {
+        force.estimated = estimator.Force(estimate.intensity, candidate);
+      }
+      report_.forces.push_back(force);
+    }
+  }
+}
+
+scene::SceneChanges Job::Changes() const {
+  scene::SceneChanges changes;
+  for (const Kind kind : options_.unknowns) {
+    for (const auto& [name, old] : scene_.materials) {
+      const std::vector<int> regions = RegionsOf(scene_, world_.mesh(), name);
+      if (kind == Kind::kCableOffset || regions.empty()) continue;
+      const fem::Material& found = report_.found.materials[regions.front()];
+      if (kind == Kind::kYoungsModulus) {
+        changes.youngs_modulus[name] = found.youngs_modulus;
+      } else {
+        changes.poissons_ratio[name] = found.poissons_ratio;
+      }
+    }
+    Eigen::Index cable = 0;
+    for (const scene::Actuator& actuator : scene_.actuators) {
+      if (actuator.type != scene::ActuatorType::kCable) continue;
+      const double offset = actuator.offset + report_.found.cable_offsets(cable++);
+      if (kind == Kind::kCableOffset) changes.cable_offset[actuator.name] = offset;
+    }
+  }
+  return changes;
+}
+
+IdentifyReport Job::Finish() {
+  if (!PlayRecording()) return report_;
+  const std::vector<estimation::KnownState> states = known_.Collected();
+  if (options_.show_progress) {
+    spdlog::logger log("softforce", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    log.set_pattern("%n: %v");
+    log.info("fitting {} nodes; unknown values: {}; states with known forces: {}",
+             world_.mesh().num_nodes(), unknowns_.size(), states.size());
+  }
+  estimation::IdentificationOptions options;
+  options.estimator = options_.tracker.estimator;
+  report_.found =
+      estimation::Identify(world_.solver->body(), states, unknowns_,
+                           InRobotFrame(standing_.covariance, standing_.T_rig_robot), options);
+  if (!report_.found.ok()) return report_;
+  report_.changes = Changes();
+  EstimateForcesAgain(states);
+  report_.usable = true;
+  return report_;
+}
+
+}  // namespace
+
+void IdentifyOptions::Check() const {
+  if (unknowns.empty())
+    throw base::InputError("--unknown", "got none, expected what is to be found");
+  for (size_t i = 0; i < unknowns.size(); ++i) {
+    if (std::count(unknowns.begin(), unknowns.end(), unknowns[i]) > 1) {
+      throw base::InputError("--unknown", "names " + NameOf(unknowns[i]) + " twice");
+    }
+  }
+  if (registration_frames < 1) {
+    throw base::InputError("--registration-frames", "must be 1 or more");
+  }
+  tracker.Check();
+}
+
+IdentifyReport Identify(const std::filesystem::path& scene_file, const IdentifyOptions& options) {
+  options.Check();
+  return Job(scene_file, options).Finish();
+}
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,43 @@
+#include "pipeline/open_recording.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/refusals.h"
+#include "softforce/base/input_error.h"
+
+namespace softforce::pipeline {
+
+std::vector<vision::Recording::Source> SourcesOf(
+    const scene::Scene& scene, const std::map<std::string, std::string>& instead) {
+  std::map<std::string, std::string> sources = scene.cameras.sources;
+  for (const auto& [camera, source] : instead) sources[camera] = source;
+  std::vector<vision::Recording::Source> files;
+  files.reserve(sources.size());
+  for (const auto& [camera, source] : sources) files.push_back({camera, source});
+  return files;
+}
+
+std::vector<std::filesystem::path> InputsOf(const scene::Scene& scene,
+                                            const std::vector<vision::Recording::Source>& sources) {
+  std::vector<std::filesystem::path> inputs{scene.file, scene.mesh.file, scene.cameras.rig};
+  if (scene.actuation_file) inputs.push_back(*scene.actuation_file);
+  for (const vision::Recording::Source& source : sources) inputs.push_back(source.file);
+  return inputs;
+}
+
+vision::Recording OpenRecording(const scene::Scene& scene, const camera::Rig& rig,
+                                const std::vector<vision::Recording::Source>& sources,
+                                int first_frame, const std::string& asked_by) {
+  RefuseUnknownLocations(scene);
+  RefuseLiveSources(scene, sources);
+  vision::Recording recording(rig, sources);
+  const int announced = recording.announced_frames();
+  if (announced > 0 && first_frame >= announced) {
+    throw base::InputError(
+        asked_by, fmt::format("asks for frame {}, but the recording has {} frames, 0 to {}",
+                              first_frame, announced, announced - 1));
+  }
+  return recording;
+}
+
+}  // namespace softforce::pipeline
