@@ -21,8 +21,17 @@ constexpr double kScaleTolerance = 0.2;
 constexpr double kNearEquilibrium = 1e-5;
 // A step of the loads is followed to this share of the movement that it makes.
 constexpr double kFollowing = 0.02;
+// Of the finest tolerance: near enough to tell a bad step from a body that is still on its way.
+constexpr double kSettled = 0.01;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
+constexpr int kMostStalled = 2;
 constexpr int kMaxHalvings = 8;
+
+// Whether a cost (half of χ²) has not grown by more than the body's distance from its equilibrium
+// can explain.
+bool IsNoWorse(double cost, double before) {
+  return cost <= before + 0.1 * std::sqrt(before) + 0.1;
+}
 
 }  // namespace
 
@@ -114,6 +123,8 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
   const Bounds bounds = ParameterBounds(told);
   *blocks = Linearise(used, prior, *parameters);
   double followed_to = INFINITY;  // m, how near its equilibrium the body is
+  bool renewed = false;           // the response, since the last step
+  int stalled = 0;                // steps in a row that gained far less than they promised
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     ++estimate->iterations;
     const double cost = RobustCost(*blocks, *parameters, *parameters, options.loss_scale);
@@ -126,8 +137,8 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
     }
     const LoadedBody::Pose before = body.pose();
     const Eigen::VectorXd step = fit.parameters - *parameters;
-    double share = 1;
     bool moved = false;
+    double share = 1;
     for (int halving = 0; halving <= kMaxHalvings && !moved; ++halving, share /= 2) {
       const Eigen::VectorXd trial = *parameters + share * step;
       const double move = body.MoveBy(trial.head(num_loads()) - before.loads);
@@ -135,17 +146,32 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
       if (!body.Move(trial.head(num_loads()), told, tolerance, iteration > 0).ok()) continue;
       std::vector<ResidualBlock> there = Linearise(used, prior, trial);
       const double cost_there = RobustCost(there, trial, trial, options.loss_scale);
-      // Not a strict fall: the body stands near its equilibrium, not at it.
-      moved = cost_there <= cost + 0.1 * std::sqrt(cost) + 0.1;
-      if (!moved) {
-        body.Return(before);
+      moved = IsNoWorse(cost_there, cost);
+      if (moved) {
+        *parameters = trial;
+        *blocks = std::move(there);
+        followed_to = tolerance;
+        renewed = false;
+        stalled = cost - cost_there < 0.1 * share * (cost - fit.cost) ? stalled + 1 : 0;
         continue;
       }
-      *parameters = trial;
-      *blocks = std::move(there);
-      followed_to = tolerance;
+      body.Return(before);
+      // Before it is blamed on the step: the body may have stood further from its equilibrium than
+      // it seemed, and so have fitted better than it does; or its response may be stale. Then begin
+      // again from there.
+      if (followed_to > kSettled * finest) {
+        moved = body.Move(before.loads, told, kSettled * finest, true).ok();
+        followed_to = kSettled * finest;
+      } else if (!renewed) {
+        moved = renewed = body.RenewResponse();
+      }
+      if (moved) *blocks = Linearise(used, prior, *parameters);
     }
     if (!moved) break;
+    if (stalled >= kMostStalled && body.RenewResponse()) {
+      *blocks = Linearise(used, prior, *parameters);
+      stalled = 0;
+    }
   }
   estimate->status = Status::kNotConverged;
   estimate->reason = "the forces and the body's equilibrium under them did not settle";

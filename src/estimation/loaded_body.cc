@@ -63,6 +63,11 @@ void LoadedBody::LearnFrom(const Pose& before, const Eigen::VectorXd& change, do
   const Eigen::VectorXd missed = moved - response_ * change;
   constexpr double kClear = 10;  // tolerances: smaller movements are not known well enough
   if (!(moved.cwiseAbs().maxCoeff() > kClear * tolerance)) return;
+  constexpr double kTooMuch = 0.5;  // of the movement: there is nothing left to correct
+  if (missed.norm() > kTooMuch * moved.norm()) {
+    response_u_.resize(3, 0);
+    return;
+  }
   const Eigen::VectorXd weighted =
       response_.colwise().squaredNorm().transpose().cwiseProduct(change);
   response_ += missed * weighted.transpose() / weighted.dot(change);
@@ -104,14 +109,17 @@ bool LoadedBody::IsResponseFresh() const {
              max_staleness_ * max_staleness_;
 }
 
-bool LoadedBody::RefreshResponse() {
-  if (IsResponseFresh()) return true;
-  fem::Sensitivity to_forces = solver_->Solve(pose_.state, H_f_, max_staleness_);
+bool LoadedBody::RefreshResponse() { return IsResponseFresh() || ComputeResponse(max_staleness_); }
+
+bool LoadedBody::RenewResponse() { return ComputeResponse(0); }
+
+bool LoadedBody::ComputeResponse(double max_staleness) {
+  fem::Sensitivity to_forces = solver_->Solve(pose_.state, H_f_, max_staleness);
   if (!to_forces.ok) return false;
   response_.resize(H_f_.rows(), num_loads());
   response_.leftCols(num_components()) = to_forces.du;
   if (!uncertain_.empty()) {
-    const fem::Sensitivity to_commands = solver_->SolveActuation(pose_.state, max_staleness_);
+    const fem::Sensitivity to_commands = solver_->SolveActuation(pose_.state, max_staleness);
     if (!to_commands.ok) return false;
     response_.rightCols(static_cast<int>(uncertain_.size())) =
         to_commands.du(Eigen::all, uncertain_);

@@ -42,6 +42,10 @@ class LoadedBody {
   fem::SolveSummary Move(const Eigen::VectorXd& loads, const fem::Actuation& told, double tolerance,
                          bool continued);
 
+  // Computes the response anew from the tangent at the pose; false if that is not positive
+  // definite.
+  bool RenewResponse();
+
   // The paper's step (eqs. 3, 4 and 6): the response at the pose, then one step of Newton's method.
   bool StepLinearly(const Eigen::VectorXd& loads, const fem::Actuation& told);
   // Moves along the response alone, without looking at the balance.
@@ -59,7 +63,8 @@ class LoadedBody {
   bool IsTold(const fem::Actuation& told) const;
   bool IsResponseFresh() const;
   void LearnFrom(const Pose& before, const Eigen::VectorXd& change, double tolerance);
-  bool RefreshResponse();
+  bool RefreshResponse();  // unless it is fresh
+  bool ComputeResponse(double max_staleness);
 
   fem::StaticSolver* solver_;
   double max_staleness_;

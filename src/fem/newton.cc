@@ -158,11 +158,12 @@ SolveSummary::Status StaticSolver::State::Newton(const LoadCase& load, double to
     progress.Add(move, -step.slope);
     summary->last_step = move;
     // A single small step is believed if its factor was made for it, or if it took away most of
-    // what the residual had along it: an old factor may take a soft body for a stiff one.
+    // what the residual had along it and the steps before do not speak against it: an old factor
+    // may take a soft body for a stiff one.
     const double left = std::abs(step.free_du.dot(residual.col(0)));
-    const bool small =
-        move <= tolerance && (fresh || move <= 1e-3 * tolerance ||
-                              left <= 0.1 * std::abs(step.free_du.dot(step.free_residual)));
+    const bool telling = left <= 0.1 * std::abs(step.free_du.dot(step.free_residual)) &&
+                         (progress.steps() < 3 || progress.remaining() <= 2 * tolerance);
+    const bool small = move <= tolerance && (fresh || move <= 1e-3 * tolerance || telling);
     const bool settled = small || 2 * progress.remaining() <= tolerance;
     if (share == 1 && settled && SlackCablesFit(load, *state, tolerance)) {
       return inverse.shift() > 0 ? SolveSummary::Status::kUnstable
