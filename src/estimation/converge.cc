@@ -24,7 +24,7 @@ constexpr double kFollowing = 0.02;
 // Of the finest tolerance: near enough to tell a bad step from a body that is still on its way.
 constexpr double kSettled = 0.01;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
-constexpr int kMostStalled = 2;
+constexpr int kPatience = 6;                // iterations, before the response is held to be stale
 constexpr int kMaxHalvings = 8;
 
 // Whether a cost (half of χ²) has not grown by more than the body's distance from its equilibrium
@@ -37,7 +37,7 @@ bool IsNoWorse(double cost, double before) {
 
 bool ForceEstimator::State::IsPossible(const Observation& observation) const {
   return observation.position.allFinite() && observation.whitening.allFinite() &&
-         observation.offset.allFinite() &&
+         !observation.whitening.isZero(0) && observation.offset.allFinite() &&
          (observation.position - observation.at.Apply(solver->body().mesh.nodes)).norm() <
              kAbsurdDistance * diagonal;
 }
@@ -78,14 +78,14 @@ fem::SolveSummary ForceEstimator::State::MoveTo(const Eigen::VectorXd& loads,
 
 std::vector<ResidualBlock> ForceEstimator::State::Linearise(
     const std::vector<WhitenedObservation>& used, const OffsetPrior& prior,
-    const Eigen::VectorXd& parameters) const {
+    const Eigen::VectorXd& parameters, LoadedBody::Of response) const {
   const int n = num_loads() + 6;
   const geometry::Vector6d offset = parameters.tail<6>();
   std::vector<ResidualBlock> blocks;
   for (const WhitenedObservation& seen : used) {
     const Eigen::Vector3d on_model = body.Position(seen.observation->at);
     Eigen::MatrixXd J(3, n);
-    J << body.Response(seen.observation->at), OffsetJacobian(on_model, prior);
+    J << body.Response(seen.observation->at, response), OffsetJacobian(on_model, prior);
     blocks.push_back(
         {seen.whitening * Misfit(*seen.observation, on_model, prior, offset), seen.whitening * J});
   }
@@ -124,7 +124,6 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
   *blocks = Linearise(used, prior, *parameters);
   double followed_to = INFINITY;  // m, how near its equilibrium the body is
   bool renewed = false;           // the response, since the last step
-  int stalled = 0;                // steps in a row that gained far less than they promised
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     ++estimate->iterations;
     const double cost = RobustCost(*blocks, *parameters, *parameters, options.loss_scale);
@@ -152,7 +151,6 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
         *blocks = std::move(there);
         followed_to = tolerance;
         renewed = false;
-        stalled = cost - cost_there < 0.1 * share * (cost - fit.cost) ? stalled + 1 : 0;
         continue;
       }
       body.Return(before);
@@ -168,9 +166,8 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
       if (moved) *blocks = Linearise(used, prior, *parameters);
     }
     if (!moved) break;
-    if (stalled >= kMostStalled && body.RenewResponse()) {
+    if (iteration % kPatience == kPatience - 1 && body.RenewResponse()) {
       *blocks = Linearise(used, prior, *parameters);
-      stalled = 0;
     }
   }
   estimate->status = Status::kNotConverged;
@@ -185,7 +182,7 @@ ForceEstimate ForceEstimator::State::FitAndReject(const std::vector<Observation>
   std::vector<WhitenedObservation> used = WhitenAll(observations, displacement, &estimate);
   const double common_sd = options.common_model_error * displacement;
   const int most_rejected =
-      static_cast<int>(options.max_rejected_share * static_cast<double>(observations.size()));
+      static_cast<int>(options.max_rejected_share * static_cast<double>(used.size()));
   Eigen::VectorXd parameters = Eigen::VectorXd::Zero(num_loads() + 6);
   parameters.head(num_loads()) = body.pose().loads;
   for (int rejections = 0;; ++rejections) {
@@ -213,6 +210,7 @@ ForceEstimate ForceEstimator::State::FitAndReject(const std::vector<Observation>
     }
     estimate.degrees_of_freedom = rows - num_loads();
     if (worst < 0) {
+      blocks = Linearise(used, prior, parameters, LoadedBody::Of::kTangent);
       if (AreLoadsObservable(blocks, &estimate)) Conclude(blocks, parameters, &estimate);
       return estimate;
     }
@@ -240,7 +238,9 @@ ForceEstimate ForceEstimator::State::Converge(const std::vector<Observation>& ob
   }
   double scale = LargestDisplacement(observations);
   for (int round = 0; round < kMaxScaleRounds; ++round) {
+    const int iterations = estimate.iterations;
     estimate = FitAndReject(observations, scale, told);
+    estimate.iterations += iterations;
     // The model's error goes with how far the body has moved, which only the fit tells: after a
     // jump, fit again.
     const double fitted = LargestDisplacement(observations);

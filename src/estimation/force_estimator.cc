@@ -202,6 +202,7 @@ ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observati
     const bool stuck = s.options.method == EstimationMethod::kLinearStep &&
                        estimate.status == ForceEstimate::Status::kNotConverged;
     s.body.Return(stuck ? s.at_rest : before);
+    s.body.ForgetResponse();
   }
   return estimate;
 }
@@ -210,11 +211,20 @@ fem::SolveSummary ForceEstimator::Advance(const fem::Actuation& actuation) {
   State& s = *state_;
   fem::Actuation told = actuation;
   if (told.cables.empty() && told.pressures.empty()) told = fem::NoActuation(s.solver->body());
-  return s.MoveTo(s.body.pose().loads, told);
+  fem::SolveSummary summary;
+  if (!s.InputProblem(told).empty()) return summary;
+  if (s.options.method == EstimationMethod::kConverged) {
+    return s.MoveTo(s.body.pose().loads, told);
+  }
+  // The linear step is made by Estimate alone.
+  if (s.body.HasResponse() || s.body.RenewResponse()) {
+    summary.status = fem::SolveSummary::Status::kConverged;
+  }
+  return summary;
 }
 
 Eigen::Matrix3Xd ForceEstimator::Compliance(const mesh::NodalWeights& at) const {
-  return state_->body.Response(at).leftCols(num_components());
+  return state_->body.Response(at, LoadedBody::Of::kTangent).leftCols(num_components());
 }
 
 Eigen::Vector3d ForceEstimator::Force(const Eigen::VectorXd& intensity, int site) const {

@@ -44,8 +44,8 @@ struct ForceEstimator::State {
 
   // The residuals linearised where the body stands: observations, offset's prior, the others.
   std::vector<ResidualBlock> Linearise(const std::vector<WhitenedObservation>& used,
-                                       const OffsetPrior& prior,
-                                       const Eigen::VectorXd& parameters) const;
+                                       const OffsetPrior& prior, const Eigen::VectorXd& parameters,
+                                       LoadedBody::Of response = LoadedBody::Of::kStep) const;
 
   ForceEstimate Converge(const std::vector<Observation>& observations, const fem::Actuation& told);
   ForceEstimate FitAndReject(const std::vector<Observation>& observations, double displacement,

@@ -23,6 +23,7 @@ ForceEstimate ForceEstimator::State::StepLinearly(const std::vector<Observation>
     return estimate;
   }
   std::vector<ResidualBlock> blocks;
+  double measured_variance = 0;  // m², sum
   for (size_t i = 0; i < observations.size(); ++i) {
     const Observation& seen = observations[i];
     estimate.rejected[i] = !IsPossible(seen);
@@ -32,8 +33,9 @@ ForceEstimate ForceEstimator::State::StepLinearly(const std::vector<Observation>
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);  // ascending
     const auto rows = seen.whitening.rows();
     const Eigen::MatrixXd measured = axes.eigenvectors().rightCols(rows).transpose();
+    measured_variance += 1 / axes.eigenvalues()(2);
     blocks.push_back({measured * (body.Position(seen.at) + seen.offset - seen.position),
-                      measured * body.Response(seen.at)});
+                      measured * body.Response(seen.at, LoadedBody::Of::kTangent)});
   }
   estimate.iterations = 1;
   if (!AreLoadsObservable(blocks, &estimate)) return estimate;
@@ -44,9 +46,10 @@ ForceEstimate ForceEstimator::State::StepLinearly(const std::vector<Observation>
     estimate.reason = "the least-squares step has no solution";
     return estimate;
   }
-  body.Shift(fit.parameters);
+  body.Shift(fit.parameters, told);
 
-  // What the misfit that is left says of the noise, the same for every coordinate.
+  // What the misfit that is left says of the noise, the same for every coordinate; without any,
+  // what the measurements themselves say.
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(num_loads(), num_loads());
   int rows = 0;
   for (const ResidualBlock& block : blocks) {
@@ -56,7 +59,7 @@ ForceEstimate ForceEstimator::State::StepLinearly(const std::vector<Observation>
   estimate.degrees_of_freedom = rows - num_loads();
   const double variance = estimate.degrees_of_freedom > 0
                               ? 2 * fit.cost / estimate.degrees_of_freedom
-                              : std::numeric_limits<double>::quiet_NaN();
+                              : measured_variance / static_cast<double>(blocks.size());
   estimate.chi2 = estimate.degrees_of_freedom;  // by that choice of the noise
   const Eigen::MatrixXd covariance = variance * information.inverse();
   estimate.intensity = fit.parameters.head(num_components());

@@ -65,7 +65,7 @@ void LoadedBody::LearnFrom(const Pose& before, const Eigen::VectorXd& change, do
   if (!(moved.cwiseAbs().maxCoeff() > kClear * tolerance)) return;
   constexpr double kTooMuch = 0.5;  // of the movement: there is nothing left to correct
   if (missed.norm() > kTooMuch * moved.norm()) {
-    response_u_.resize(3, 0);
+    ForgetResponse();
     return;
   }
   const Eigen::VectorXd weighted =
@@ -116,14 +116,18 @@ bool LoadedBody::RenewResponse() { return ComputeResponse(0); }
 bool LoadedBody::ComputeResponse(double max_staleness) {
   fem::Sensitivity to_forces = solver_->Solve(pose_.state, H_f_, max_staleness);
   if (!to_forces.ok) return false;
-  response_.resize(H_f_.rows(), num_loads());
-  response_.leftCols(num_components()) = to_forces.du;
+  tangent_response_.resize(H_f_.rows(), num_loads());
+  tangent_response_.leftCols(num_components()) = to_forces.du;
+  tension_response_.resize(to_forces.d_tension.rows(), num_loads());
+  tension_response_.leftCols(num_components()) = to_forces.d_tension;
   if (!uncertain_.empty()) {
     const fem::Sensitivity to_commands = solver_->SolveActuation(pose_.state, max_staleness);
     if (!to_commands.ok) return false;
-    response_.rightCols(static_cast<int>(uncertain_.size())) =
-        to_commands.du(Eigen::all, uncertain_);
+    const auto commands = static_cast<int>(uncertain_.size());
+    tangent_response_.rightCols(commands) = to_commands.du(Eigen::all, uncertain_);
+    tension_response_.rightCols(commands) = to_commands.d_tension(Eigen::all, uncertain_);
   }
+  response_ = tangent_response_;
   response_u_ = pose_.state.u;
   response_taut_ = pose_.state.tension.array() > 0;
   return true;
@@ -134,26 +138,30 @@ bool LoadedBody::StepLinearly(const Eigen::VectorXd& loads, const fem::Actuation
   Pose trial = pose_;
   if (!solver_->LinearStep(LoadOf(loads, told), &trial.state)) return false;
   ++factorisations_;
-  response_u_.resize(3, 0);  // stale whatever it was
+  ForgetResponse();
   const bool fresh = RefreshResponse();
   trial.loads = loads;
   if (fresh) pose_ = trial;
   return fresh;
 }
 
-void LoadedBody::Shift(const Eigen::VectorXd& loads) {
-  pose_.state.u += (response_ * (loads - pose_.loads)).reshaped(3, pose_.state.u.cols());
+void LoadedBody::Shift(const Eigen::VectorXd& loads, const fem::Actuation& told) {
+  const Eigen::VectorXd change = loads - pose_.loads;
+  pose_.state.u += (tangent_response_ * change).reshaped(3, pose_.state.u.cols());
+  pose_.state.tension += tension_response_ * change;
   pose_.loads = loads;
+  pose_.state.load = LoadOf(loads, told);
 }
 
 Eigen::Vector3d LoadedBody::Position(const mesh::NodalWeights& at) const {
   return at.Apply(solver_->body().mesh.nodes) + at.Apply(pose_.state.u);
 }
 
-Eigen::Matrix3Xd LoadedBody::Response(const mesh::NodalWeights& at) const {
+Eigen::Matrix3Xd LoadedBody::Response(const mesh::NodalWeights& at, Of of) const {
+  const Eigen::MatrixXd& response = of == Of::kStep ? response_ : tangent_response_;
   Eigen::Matrix3Xd W = Eigen::Matrix3Xd::Zero(3, num_loads());
   for (size_t i = 0; i < at.nodes.size(); ++i) {
-    W += at.weights[i] * response_.middleRows<3>(3 * at.nodes[i]);
+    W += at.weights[i] * response.middleRows<3>(3 * at.nodes[i]);
   }
   return W;
 }

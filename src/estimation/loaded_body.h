@@ -30,6 +30,9 @@ class LoadedBody {
   const Pose& pose() const { return pose_; }
   const fem::Equilibrium& state() const { return pose_.state; }
   void Return(const Pose& pose) { pose_ = pose; }
+  bool HasResponse() const { return response_u_.cols() > 0; }
+  // The response is computed anew before it is used again.
+  void ForgetResponse() { response_u_.resize(3, 0); }
 
   // What acts if the actuators were told `told`.
   fem::LoadCase LoadOf(const Eigen::VectorXd& loads, const fem::Actuation& told) const;
@@ -49,11 +52,14 @@ class LoadedBody {
   // The paper's step (eqs. 3, 4 and 6): the response at the pose, then one step of Newton's method.
   bool StepLinearly(const Eigen::VectorXd& loads, const fem::Actuation& told);
   // Moves along the response alone, without looking at the balance.
-  void Shift(const Eigen::VectorXd& loads);
+  void Shift(const Eigen::VectorXd& loads, const fem::Actuation& told);
 
-  // Position of a point of the body now, m, and its derivative by the loads, 3×loads.
+  // Position of a point of the body now, m, and its derivative by the loads, 3×loads: the best
+  // guess for the next step, or that of the tangent as last factorised. The former has learnt from
+  // steps in few directions, and says nothing of uncertainty.
   Eigen::Vector3d Position(const mesh::NodalWeights& at) const;
-  Eigen::Matrix3Xd Response(const mesh::NodalWeights& at) const;
+  enum class Of { kStep, kTangent };
+  Eigen::Matrix3Xd Response(const mesh::NodalWeights& at, Of of) const;
   // The farthest that any node would move by a change of loads, to first order, m.
   double MoveBy(const Eigen::VectorXd& change) const;
 
@@ -71,7 +77,9 @@ class LoadedBody {
   std::vector<int> uncertain_;
   Eigen::MatrixXd H_f_;  // 3N×components: nodal force per newton of each
   Pose pose_;
-  Eigen::MatrixXd response_;  // 3N×loads, at response_u_
+  Eigen::MatrixXd tangent_response_;  // 3N×loads, m per N (m, Pa), of the tangent at response_u_
+  Eigen::MatrixXd tension_response_;  // cables×loads, N per the same
+  Eigen::MatrixXd response_;          // the former, corrected by the steps made since
   Eigen::Matrix3Xd response_u_;
   Eigen::Array<bool, Eigen::Dynamic, 1> response_taut_;  // which cables were taut there
   int factorisations_ = 0;

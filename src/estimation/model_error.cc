@@ -11,15 +11,17 @@ namespace softforce::estimation {
 namespace {
 
 constexpr double kOffsetFloor = 1e-9;  // m; far below what any camera sees
+constexpr double kExtentFloor = 1e-3;  // m; a single marker has none, and shows no rotation
 
 }  // namespace
 
 WhitenedObservation Whiten(const Observation& observation, int index, double model_sd,
                            int companions) {
-  // Directions that the measurement says nothing about (one camera) stay without a row.
-  const int rows = static_cast<int>(observation.whitening.rows());
   const Eigen::Matrix3d information = observation.whitening.transpose() * observation.whitening;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(information);  // ascending
+  // Directions that the measurement says nothing about (one camera) stay without a row.
+  const double least = 1e-12 * axes.eigenvalues()(2);
+  const int rows = static_cast<int>((axes.eigenvalues().array() > least).count());
   WhitenedObservation whitened{index, &observation, Whitening(rows, 3), INFINITY};
   for (int i = 0; i < rows; ++i) {
     const int axis = 3 - rows + i;
@@ -44,14 +46,14 @@ std::vector<int> CountCompanions(const std::vector<Observation>& observations) {
 }
 
 PointCloud CloudOf(const std::vector<WhitenedObservation>& observations,
-                   const Eigen::Matrix3Xd& X) {
+                   const Eigen::Matrix3Xd& x) {
   PointCloud cloud{Eigen::Vector3d::Zero(), 0};
   const auto n = static_cast<double>(observations.size());
   for (const WhitenedObservation& seen : observations) {
-    cloud.centre += seen.observation->at.Apply(X) / n;
+    cloud.centre += seen.observation->at.Apply(x) / n;
   }
   for (const WhitenedObservation& seen : observations) {
-    cloud.extent += (seen.observation->at.Apply(X) - cloud.centre).squaredNorm() / n;
+    cloud.extent += (seen.observation->at.Apply(x) - cloud.centre).squaredNorm() / n;
   }
   cloud.extent = std::sqrt(cloud.extent);
   return cloud;
@@ -66,16 +68,16 @@ geometry::Matrix6d OffsetCovariance(const PointCloud& cloud, const geometry::Mat
   // The model's common error moves the points about as far by turning as by shifting. The floor
   // keeps P regular.
   const double shift = std::hypot(model_sd, kOffsetFloor);
-  const double turn = shift / std::max(cloud.extent, kOffsetFloor);
+  const double turn = shift / std::max(cloud.extent, kExtentFloor);
   P.diagonal().head<3>().array() += shift * shift;
   P.diagonal().tail<3>().array() += turn * turn;
   return P;
 }
 
 OffsetPrior MakeOffsetPrior(const std::vector<WhitenedObservation>& observations,
-                            const Eigen::Matrix3Xd& X, const geometry::Matrix6d& registration,
+                            const Eigen::Matrix3Xd& x, const geometry::Matrix6d& registration,
                             double model_sd) {
-  const PointCloud cloud = CloudOf(observations, X);
+  const PointCloud cloud = CloudOf(observations, x);
   const geometry::Matrix6d L = OffsetCovariance(cloud, registration, model_sd).llt().matrixL();
   return {cloud.centre, L.inverse()};
 }

@@ -27,16 +27,16 @@ std::vector<int> CountCompanions(const std::vector<Observation>& observations);
 // The small rigid motion of what was measured against the model: translation (m), then rotation
 // (rad) about `centre`. Its prior has mean zero and covariance P.
 struct OffsetPrior {
-  Eigen::Vector3d centre;        // m, mean of the observed points at rest
+  Eigen::Vector3d centre;        // m, mean of the observed points
   geometry::Matrix6d whitening;  // P^(-1/2)
 };
 
-// Where the observed points are, at rest.
+// Where the observed points are when the nodes stand at `x`.
 struct PointCloud {
   Eigen::Vector3d centre;  // m
   double extent;           // m, root mean square distance from the centre
 };
-PointCloud CloudOf(const std::vector<WhitenedObservation>& observations, const Eigen::Matrix3Xd& X);
+PointCloud CloudOf(const std::vector<WhitenedObservation>& observations, const Eigen::Matrix3Xd& x);
 
 // P of an offset about the centre: where the rig's place is uncertain (`registration`: covariance
 // of a twist at the robot's origin), and a common error of the model that shifts the points by
@@ -45,7 +45,7 @@ geometry::Matrix6d OffsetCovariance(const PointCloud& cloud, const geometry::Mat
                                     double model_sd);
 
 OffsetPrior MakeOffsetPrior(const std::vector<WhitenedObservation>& observations,
-                            const Eigen::Matrix3Xd& X, const geometry::Matrix6d& registration,
+                            const Eigen::Matrix3Xd& x, const geometry::Matrix6d& registration,
                             double model_sd);
 
 // The observed point's position on the model (m) less its measurement, moved by an offset.

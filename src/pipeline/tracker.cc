@@ -116,7 +116,9 @@ FrameResult Tracker::Process(int frame, double time_s,
   for (size_t i = 0; i < feature_of.size(); ++i) rejected[feature_of[i]] = estimate.rejected[i];
   result.status = estimate.status;
   result.reason =
-      advanced.ok() ? estimate.reason : advanced.BriefReport() + ". " + advanced.Advice();
+      advanced.ok() || estimate.status == estimation::ForceEstimate::Status::kInvalidInput
+          ? estimate.reason
+          : advanced.BriefReport() + ". " + advanced.Advice();
   result.chi2 = estimate.chi2;
   result.degrees_of_freedom = estimate.degrees_of_freedom;
   frames_without_forces_ = estimate.ok() ? 0 : frames_without_forces_ + 1;

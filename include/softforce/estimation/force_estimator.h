@@ -125,7 +125,8 @@ class ForceEstimator {
   int num_components() const;
   const std::vector<ForceSite>& sites() const;
 
-  // Moves the body to a new actuation under the last forces, without observations.
+  // Moves the body to a new actuation under the last forces, without observations; by the linear
+  // method it stays where it is. Not run for an actuation that Estimate would refuse.
   fem::SolveSummary Advance(const fem::Actuation& actuation);
 
   // How uncertain the place of the rig is: covariance of a twist xi (translation in m, rotation in
@@ -136,7 +137,7 @@ class ForceEstimator {
   void SetBounds(int site, double lowest, double highest);
 
   // Estimates the forces under the given actuation. If the status is not kOk the state stays as it
-  // was before.
+  // was before; a linear step that led where there is no next one goes back to rest.
   ForceEstimate Estimate(const std::vector<Observation>& observations,
                          const fem::Actuation& actuation);
 
