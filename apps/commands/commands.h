@@ -16,5 +16,6 @@ Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);
+Command AddValidate(CLI::App* program);
 
 }  // namespace softforce::apps

@@ -1,0 +1,59 @@
+// Table I: the inverse model is exact.
+#include <functional>
+
+#include "softforce/validation/direct_model.h"
+#include "softforce/validation/inverse_model.h"
+#include "softforce/validation/measures.h"
+#include "softforce/validation/study.h"
+#include "validation/jobs.h"
+
+namespace softforce::validation {
+namespace {
+
+constexpr double kTolerance = 1e-13;  // of the body's diagonal: rounding
+constexpr double kFinest = 1e-12;     // m, of the estimate: I_w = 2000 N/mm makes 2e-6 mN of it
+
+ExactCase RunCase(const Layout& layout, const mesh::TetMesh& mesh, const DirectModel& direct) {
+  ExactCase result;
+  result.layout = layout;
+  const Model model = MakeModel(layout.body, mesh, kYoungsModulus);
+  fem::StaticSolverOptions solver_options;
+  solver_options.tolerance = kTolerance;
+  fem::StaticSolver solver(model.body, layout.name, solver_options);
+  const fem::Actuation told = Tensioned(model.body);
+
+  estimation::EstimatorOptions options = LeastSquares(kFinest);
+  InverseModel converged(model, &solver, layout, options, kWideSd);
+  converged.estimator().Advance(fem::NoActuation(model.body));
+  result.I_w = InverseComplianceNorm(converged.Compliance());
+  result.converged =
+      converged.Error(Seen(direct.model, direct.loaded.back(), layout.markers), told);
+
+  options.method = estimation::EstimationMethod::kLinearStep;
+  options.max_staleness = 0;  // a new tangent in every frame, as in the paper
+  InverseModel linear(model, &solver, layout, options, kWideSd);
+  linear.estimator().Advance(told);
+  for (const fem::Equilibrium& frame : direct.loaded) {
+    result.linear = linear.Error(Seen(direct.model, frame, layout.markers), told);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<ExactCase> RunExact(BodyKind body, const mesh::TetMesh& mesh,
+                                const std::vector<Layout>& layouts, const StudyOptions& options) {
+  std::vector<ExactCase> results(layouts.size());
+  if (layouts.empty()) return results;
+  const DirectModel direct =
+      SolveDirectModel(body, MakeModel(body, mesh, kYoungsModulus), options.frames, kTolerance);
+  std::vector<std::function<void()>> jobs;
+  for (size_t i = 0; i < layouts.size(); ++i) {
+    jobs.emplace_back([&, i] { results[i] = RunCase(layouts[i], mesh, direct); });
+  }
+  RunJobs(jobs, options.threads,
+          options.show_progress ? std::string("Table I, ") + Name(body) : "");
+  return results;
+}
+
+}  // namespace softforce::validation
