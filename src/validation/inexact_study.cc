@@ -15,6 +15,7 @@ constexpr double kTolerance = 1e-9;  // of the body's diagonal, of direct and in
 constexpr double kFinest = 1e-8;     // m, of the estimates
 // m. Misfits of micrometres do not need the tangent of the very place.
 constexpr double kStaleness = 2e-4;
+constexpr int kMaxIterations = 12;  // a fit that takes more is taken for one without an answer
 
 const Eigen::Vector3d kNowhere = Eigen::Vector3d::Constant(NAN);
 
@@ -44,10 +45,17 @@ std::vector<fem::Material> OfModulus(const Model& model, double youngs_modulus) 
 void RunPlain(const Model& model, const Views& views, InexactCase* result) {
   fem::StaticSolverOptions options;
   options.tolerance = kTolerance;
+  // Where the forces that would explain a wrong model are beyond what the body can bear, there is
+  // no answer: not worth minutes of ever smaller steps towards them.
+  options.max_load_halvings = 1;
+  options.max_iterations = 30;
   fem::StaticSolver solver(model.body, result->layout.name, options);
+  estimation::EstimatorOptions least_squares = LeastSquares(kFinest);
+  least_squares.max_staleness = kStaleness;
+  least_squares.max_iterations = kMaxIterations;
   const auto make = [&](double youngs_modulus) {
     solver.SetMaterials(OfModulus(model, youngs_modulus));
-    return InverseModel(model, &solver, result->layout, LeastSquares(kFinest), kWideSd);
+    return InverseModel(model, &solver, result->layout, least_squares, kWideSd);
   };
   for (size_t i = 0; i < kWrongModuli.size(); ++i) {
     result->modulus[i] = make(kWrongModuli[i]).Error(views.loaded, Tensioned(model.body));
@@ -99,6 +107,7 @@ class Remedied {
   static estimation::EstimatorOptions WithRegistration() {
     estimation::EstimatorOptions options = LeastSquares(kFinest);
     options.max_staleness = kStaleness;
+    options.max_iterations = kMaxIterations;
     options.tolerance = kFinest / kMarkerSd;
     // The discretisations differ by more than the markers' noise: no marker is an outlier.
     options.rejection_probability = 1e-12;
