@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "commands/commands.h"
+#include "commands/stop.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
 #include "softforce/pipeline/identify.h"
@@ -15,13 +14,6 @@ namespace softforce::apps {
 namespace {
 
 using Kind = estimation::Unknown::Kind;
-
-std::atomic<bool> stop_asked{false};
-
-void AskToStop(int signal) {
-  stop_asked = true;
-  std::signal(signal, SIG_DFL);
-}
 
 struct IdentifyArguments {
   std::string scene;
@@ -51,13 +43,17 @@ std::filesystem::path Target(const IdentifyArguments& arguments) {
       throw base::InputError("-o " + arguments.out, "is the scene itself",
                              "Use --in-place if you want it changed.");
     }
-    base::CheckCanWrite(arguments.out);
+    base::CheckCanWrite(std::filesystem::weakly_canonical(arguments.out, ignored));
     return arguments.out;
   }
   if (!arguments.out.empty()) {
     throw base::InputError("--in-place", "got -o as well, expected one of them");
   }
-  return arguments.scene;
+  // Where it is a link: the file that it leads to. A scene that is not there is refused when read.
+  std::error_code ignored;
+  const auto scene = std::filesystem::weakly_canonical(arguments.scene, ignored);
+  if (std::filesystem::is_regular_file(scene, ignored)) base::CheckCanWrite(scene);
+  return scene;
 }
 
 int Identify(IdentifyArguments* arguments) {
@@ -75,12 +71,11 @@ int Identify(IdentifyArguments* arguments) {
     options.sources[camera.substr(0, equals)] = camera.substr(equals + 1);
   }
   const std::filesystem::path target = Target(*arguments);
-  options.stop = &stop_asked;
-  std::signal(SIGINT, AskToStop);
-  std::signal(SIGTERM, AskToStop);
+  if (!arguments->in_place) options.out = target;
+  options.stop = StopOnSignal();
   const pipeline::IdentifyReport report = pipeline::Identify(arguments->scene, options);
   fmt::print("{}", report.FullReport());
-  if (!report.usable) return 1;
+  if (!report.usable || *options.stop) return 1;
   if (!target.empty()) {
     scene::WriteChangedScene(arguments->scene, report.changes, target);
     fmt::print("\nWritten: {}\n", target.string());

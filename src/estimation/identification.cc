@@ -36,6 +36,12 @@ double Guess(const Unknown& unknown, const fem::Actuation& actuation,
              : options.guess_shortening;
 }
 
+const char* UnitOf(const Unknown& unknown, const std::vector<KnownState>& states) {
+  if (unknown.kind != Kind::kCableOffset) return "";
+  const fem::CableCommand& told = states.front().actuation.cables[unknown.cable];
+  return told.input == fem::CableInput::kTension ? "N" : "m";
+}
+
 // One identification under way.
 class Task {
  public:
@@ -51,6 +57,8 @@ class Task {
   std::vector<double> Displacements() const;
   bool FitToSettledScale();
   bool Fit();
+  bool Stopped();
+  std::string WhyNotSettled() const;
   bool RejectAndFit();
   Eigen::MatrixXd InformationOnUnknowns(bool with_loss) const;
   bool Observable();
@@ -137,11 +145,39 @@ std::vector<double> Task::Displacements() const {
 bool Task::Fit() {
   const IdentificationFit::Result fit = fit_->Minimise(&parameters_);
   result_.iterations += fit.iterations;
+  if (Stopped()) return false;
   const bool reached = fit.converged && body_.MoveTo(fit_->Theta(parameters_));
   if (!reached) {
-    Fail(Status::kNotConverged, fit.converged ? "a state has no equilibrium" : fit.message);
+    Fail(Status::kNotConverged, fit.converged ? "a state has no equilibrium" : WhyNotSettled());
   }
   return reached;
+}
+
+bool Task::Stopped() {
+  const bool stopped = options_.stop != nullptr && *options_.stop;
+  if (stopped) Fail(Status::kStopped, "stopped during the fit");
+  return stopped;
+}
+
+// The least-squares solver speaks of its own iterations; what helps is where the values went.
+std::string Task::WhyNotSettled() const {
+  const Eigen::VectorXd theta = fit_->Theta(parameters_);
+  std::string values;
+  for (int p = 0; p < body_.num_unknowns(); ++p) {
+    const Unknown& unknown = unknowns_[p];
+    if (p > 0) values += ", ";
+    if (unknown.kind == Kind::kYoungsModulus) {
+      values += fmt::format("{} at {:.3g} times its start", unknown.name, std::exp(theta(p)));
+    } else {
+      values +=
+          fmt::format("{} changed by {:+.3g} {}", unknown.name, theta(p), UnitOf(unknown, states_));
+    }
+  }
+  return fmt::format(
+      "no values were found that bring the model to what was seen (given up with {}); check the "
+      "weights' signs, units and frames; if what is not sought for is wrong, too, such as Young's "
+      "modulus, let it be found as well",
+      values);
 }
 
 bool Task::FitToSettledScale() {
@@ -261,8 +297,7 @@ void Task::Conclude() {
       value.start = rest_.materials[region].poissons_ratio;
       value.value = result_.materials[region].poissons_ratio;
     } else {
-      const fem::CableCommand& told = states_.front().actuation.cables[unknown.cable];
-      value.unit = told.input == fem::CableInput::kTension ? "N" : "m";
+      value.unit = UnitOf(unknown, states_);
     }
     result_.values.push_back(value);
   }
@@ -293,6 +328,7 @@ StateFit Task::DescribeState(int s) const {
 
 Identification Task::Run() {
   displacements_.assign(states_.size(), 0);
+  if (Stopped()) return result_;
   if (!body_.MoveTo(fit_->Theta(parameters_))) {
     Fail(Status::kNotConverged,
          "a state has no equilibrium with the values to start from: check the weights and their "
@@ -306,7 +342,8 @@ Identification Task::Run() {
     result_.status = Status::kOk;
     Conclude();
   }
-  if (result_.iterations > 0 && result_.status != Status::kNotConverged) {
+  if (result_.iterations > 0 && result_.status != Status::kNotConverged &&
+      result_.status != Status::kStopped) {
     result_.chi2 = fit_->ChiSquare(parameters_);
     result_.degrees_of_freedom = fit_->num_rows() - body_.num_unknowns();
     for (int s = 0; s < static_cast<int>(states_.size()); ++s) {

@@ -35,6 +35,19 @@ class MoveBody : public ceres::EvaluationCallback {
   bool reached_ = false;
 };
 
+// Ends the minimisation after the iteration in which it was asked to.
+class EndWhenAsked : public ceres::IterationCallback {
+ public:
+  explicit EndWhenAsked(const std::atomic<bool>* asked) : asked_(asked) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return asked_ != nullptr && *asked_ ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::atomic<bool>* asked_;
+};
+
 class BlockCost : public ceres::CostFunction {
  public:
   BlockCost(const IdentificationFit& fit, const IdentificationFit::Block& block,
@@ -283,6 +296,8 @@ IdentificationFit::Result IdentificationFit::Minimise(Eigen::VectorXd* parameter
   solver_options.max_num_iterations = options_.estimator.max_iterations;
   NegligibleStep negligible_step(options_.tolerance);
   solver_options.callbacks.push_back(&negligible_step);
+  EndWhenAsked end_when_asked(options_.stop);
+  solver_options.callbacks.push_back(&end_when_asked);
   solver_options.function_tolerance = 1e-14;
   solver_options.parameter_tolerance = 1e-12;
   solver_options.gradient_tolerance = 1e-14;
@@ -294,7 +309,6 @@ IdentificationFit::Result IdentificationFit::Minimise(Eigen::VectorXd* parameter
   result.converged =
       summary.IsSolutionUsable() && summary.termination_type != ceres::NO_CONVERGENCE;
   result.iterations = static_cast<int>(summary.iterations.size());
-  result.message = summary.message;
   return result;
 }
 

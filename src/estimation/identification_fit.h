@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -41,7 +40,6 @@ class IdentificationFit {
   struct Result {
     bool converged = false;
     int iterations = 0;
-    std::string message;
   };
   // Minimises from `parameters`, which are replaced.
   Result Minimise(Eigen::VectorXd* parameters);

@@ -22,6 +22,8 @@ const char* Name(Identification::Status status) {
       return "not_converged";
     case Identification::Status::kInconsistent:
       return "inconsistent";
+    case Identification::Status::kStopped:
+      return "stopped";
   }
   return "";
 }

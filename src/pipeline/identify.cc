@@ -8,6 +8,7 @@
 
 #include "pipeline/known_states.h"
 #include "pipeline/open_recording.h"
+#include "pipeline/refusals.h"
 #include "pipeline/registration.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/progress.h"
@@ -95,10 +96,10 @@ class Job {
       : options_(options),
         scene_(scene::LoadScene(scene_file)),
         rig_(scene::LoadRig(scene_.cameras.rig)),
+        sources_(ProtectedSources()),
         weights_(ParseWeights(options.weights, scene_)),
         // All frames asked for must be there, so the last one is looked for.
-        recording_(OpenRecording(scene_, rig_, SourcesOf(scene_, options.sources),
-                                 LastFrame(weights_), "--weights")),
+        recording_(OpenRecording(scene_, rig_, sources_, LastFrame(weights_), "--weights")),
         world_(BuildWorld(scene_)),
         unknowns_(UnknownsOf(scene_, world_.mesh(), options)),
         detector_(scene_),
@@ -108,6 +109,9 @@ class Job {
   IdentifyReport Finish();
 
  private:
+  // The cameras' files, once it is sure that no file of the job would be replaced.
+  std::vector<vision::Recording::Source> ProtectedSources() const;
+  bool Stopped();
   bool PlayRecording();  // false if there is nothing to go on with
   void Warn(const std::string& warning) { report_.warnings.push_back(warning); }
   void EstimateForcesAgain(const std::vector<estimation::KnownState>& states);
@@ -116,6 +120,7 @@ class Job {
   const IdentifyOptions& options_;
   const scene::Scene scene_;
   const camera::Rig rig_;
+  const std::vector<vision::Recording::Source> sources_;
   const std::vector<KnownWeights> weights_;
   vision::Recording recording_;
   const World world_;
@@ -126,16 +131,31 @@ class Job {
   IdentifyReport report_;
 };
 
+std::vector<vision::Recording::Source> Job::ProtectedSources() const {
+  std::vector<vision::Recording::Source> sources = SourcesOf(scene_, options_.sources);
+  if (options_.out.empty()) return sources;
+  std::vector<std::filesystem::path> inputs = FilesOf(scene_, sources);
+  // Those of the scene, too, if other videos are used instead.
+  for (const auto& [camera, source] : scene_.cameras.sources) inputs.emplace_back(source);
+  for (const std::filesystem::path& file : WeightsFiles(options_.weights)) inputs.push_back(file);
+  RefuseToReplace(inputs, options_.out, "-o");
+  return sources;
+}
+
+bool Job::Stopped() {
+  const bool stopped = options_.stop != nullptr && *options_.stop;
+  if (stopped) Warn("stopped: nothing is written");
+  return stopped;
+}
+
 bool Job::PlayRecording() {
   Tracker tracker(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
                   options_.tracker);
   base::Progress progress("frames", known_.end_frame());
-  int lost = 0, used = 0;
+  int& lost = report_.frames_left_out;
+  int odd = 0, used = 0;
   while (true) {
-    if (options_.stop != nullptr && *options_.stop) {
-      Warn("stopped before the last frame with known forces");
-      return false;
-    }
+    if (Stopped()) return false;
     const auto frame = recording_.Next();
     if (!frame || frame->frame >= known_.end_frame()) break;
     // Also frames whose forces are not known: the markers are followed through them.
@@ -143,16 +163,26 @@ bool Job::PlayRecording() {
         tracker.Process(frame->frame, frame->time_s, detector_.Markers(*frame));
     if (options_.show_progress) progress.Update(frame->frame + 1);
     if (!known_.Wants(frame->frame)) continue;
-    if (!result.forces.empty()) {
-      ++used;
-      known_.Add(frame->frame, ActuationAt(scene_, frame->time_s), tracker.observations());
-    } else if (++lost <= kMaxFrameWarnings) {
-      Warn(fmt::format("frame {} is left out: {}: {}", frame->frame,
-                       estimation::Name(result.status), result.reason));
+    if (tracker.observations().empty()) {
+      if (++lost <= kMaxFrameWarnings) {
+        Warn(fmt::format("frame {} is left out: {}: {}", frame->frame,
+                         estimation::Name(result.status), result.reason));
+      }
+      continue;
+    }
+    ++used;
+    known_.Add(frame->frame, ActuationAt(scene_, frame->time_s), tracker.observations());
+    // The scene's values may be too wrong for a run: that is what is to be put right.
+    if (result.forces.empty() && ++odd <= kMaxFrameWarnings) {
+      Warn(
+          fmt::format("frame {} is used, though a run with the scene as it is finds no forces: "
+                      "{}: {}",
+                      frame->frame, estimation::Name(result.status), result.reason));
     }
   }
   if (options_.show_progress) progress.Finish();
   if (lost > kMaxFrameWarnings) Warn(fmt::format("{} frames are left out in all", lost));
+  if (odd > kMaxFrameWarnings) Warn(fmt::format("a run finds no forces in {} frames", odd));
   if (!recording_.truncation().empty()) Warn(recording_.truncation());
   if (used == 0) Warn("no frame with known forces could be used");
   return used > 0 && recording_.truncation().empty();
@@ -165,6 +195,7 @@ void Job::EstimateForcesAgain(const std::vector<estimation::KnownState>& states)
   for (size_t s = 0; s < states.size(); ++s) {
     const KnownWeights& weights = known_.WeightsOf(static_cast<int>(s));
     if (weights.forces.empty()) continue;
+    if (options_.stop != nullptr && *options_.stop) return;
     fem::Actuation actuation = states[s].actuation;
     for (size_t c = 0; c < actuation.cables.size(); ++c) {
       actuation.cables[c].value += report_.found.cable_offsets(static_cast<Eigen::Index>(c));
@@ -211,6 +242,9 @@ scene::SceneChanges Job::Changes() const {
 
 IdentifyReport Job::Finish() {
   if (!PlayRecording()) return report_;
+  const std::vector<std::string> moving = known_.Moving(scene_);
+  for (const std::string& states : moving) Warn(states);
+  if (!moving.empty()) return report_;
   const std::vector<estimation::KnownState> states = known_.Collected();
   if (options_.show_progress) {
     spdlog::logger log("softforce", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
@@ -220,13 +254,14 @@ IdentifyReport Job::Finish() {
   }
   estimation::IdentificationOptions options;
   options.estimator = options_.tracker.estimator;
+  options.stop = options_.stop;
   report_.found =
       estimation::Identify(world_.solver->body(), states, unknowns_,
                            InRobotFrame(standing_.covariance, standing_.T_rig_robot), options);
   if (!report_.found.ok()) return report_;
   report_.changes = Changes();
   EstimateForcesAgain(states);
-  report_.usable = true;
+  report_.usable = !Stopped();
   return report_;
 }
 

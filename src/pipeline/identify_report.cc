@@ -114,6 +114,11 @@ std::string IdentifyReport::FullReport() const {
   if (!found.ok()) {
     text += "not usable: " + found.BriefReport() + "\n";
     if (found.status == estimation::Identification::Status::kUnobservable) {
+      if (frames_left_out > 0) {
+        text += fmt::format(
+            "{} frames with known forces were left out, see above: it may show in those.\n",
+            frames_left_out);
+      }
       text += "Add frames in which it shows, or leave it as it is.\n";
     }
     if (found.status == estimation::Identification::Status::kInconsistent) {

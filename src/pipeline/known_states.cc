@@ -2,15 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "softforce/geometry/chi_square.h"
 
 namespace softforce::pipeline {
 namespace {
 
 // Commands closer than this share of the largest in the table are the same.
 constexpr double kSameCommand = 1e-3;
+
+// A feature moves if chance lets noise scatter it so with this probability only, and if it goes
+// further than this share of what the body is displaced: so much hardly shows in the values found.
+constexpr double kChance = 1e-6;
+constexpr double kAtRest = 0.005;
+
+// Directions that no camera sees have less than this share of the largest information.
+constexpr double kNoInformation = 1e-9;
 
 std::vector<double> Commands(const fem::Actuation& actuation) {
   std::vector<double> commands;
@@ -72,11 +84,11 @@ void KnownStates::Add(int frame, const fem::Actuation& actuation,
     const Eigen::Matrix3d information = seen.whitening.transpose() * seen.whitening;
     feature.information += information;
     feature.weighted += information * seen.position;
+    feature.all.push_back(seen);
   }
 }
 
 estimation::Observation KnownStates::Mean(const Feature& feature) const {
-  constexpr double kNoInformation = 1e-9;  // of the largest: a direction that no camera sees
   estimation::Observation mean = feature.first.seen;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(feature.information);  // ascending
   const Eigen::Vector3d information = axes.eigenvalues();
@@ -88,6 +100,94 @@ estimation::Observation KnownStates::Mean(const Feature& feature) const {
   mean.whitening = (information.tail(3 - first) / feature.frames).cwiseSqrt().asDiagonal() *
                    R.rightCols(3 - first).transpose();
   return mean;
+}
+
+KnownStates::Scatter KnownStates::ScatterOf(const Feature& feature) const {
+  // From the first place on, so that what no camera sees plays no part.
+  const estimation::Observation& first = feature.first.seen;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(feature.information);  // ascending
+  Eigen::Vector3d inverse = Eigen::Vector3d::Zero();
+  int seen_directions = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (axes.eigenvalues()(i) <= kNoInformation * axes.eigenvalues()(2)) continue;
+    inverse(i) = 1 / axes.eigenvalues()(i);
+    ++seen_directions;
+  }
+  const Eigen::Matrix3d& R = axes.eigenvectors();
+  const Eigen::Vector3d mean =
+      R * inverse.asDiagonal() * R.transpose() *
+      (feature.weighted - feature.information * first.position);  // less the first place
+  double chi2 = 0, squares = 0;
+  int rows = 0;
+  for (const estimation::Observation& seen : feature.all) {
+    const Eigen::VectorXd whitened = seen.whitening * (seen.position - first.position - mean);
+    const Eigen::MatrixXd gram = seen.whitening * seen.whitening.transpose();
+    chi2 += whitened.squaredNorm();
+    squares += whitened.dot(gram.ldlt().solve(whitened));
+    rows += static_cast<int>(whitened.size());
+  }
+  Scatter scatter;
+  scatter.displacement =
+      (first.position + mean - first.at.Apply(world_.mesh().nodes) - first.offset).norm();
+  const int degrees_of_freedom = rows - seen_directions;
+  if (feature.frames < 2 || degrees_of_freedom < 1) return scatter;
+  scatter.rms = std::sqrt(squares / (feature.frames - 1));
+  scatter.is_noise = chi2 <= geometry::ChiSquareQuantile(1 - kChance, degrees_of_freedom);
+  return scatter;
+}
+
+double KnownStates::Displacement(const State& state) const {
+  double displacement = 0;
+  for (const auto& [number, feature] : state.features) {
+    displacement = std::max(displacement, ScatterOf(feature).displacement);
+  }
+  return displacement;
+}
+
+std::string KnownStates::Movement(const State& state, const scene::Scene& scene) const {
+  double displacement = Displacement(state);
+  if (weights_[state.spec].forces.empty()) {
+    // Without a weight the body may hardly be displaced: trembling counts beside what weights do.
+    for (const State& other : collected_) {
+      displacement = std::max(displacement, Displacement(other));
+    }
+  }
+  std::set<int> seen, moving;  // markers: the corners of a tag move together
+  double farthest = 0;
+  int mover = -1;
+  for (const auto& [number, feature] : state.features) {
+    const Scatter scatter = ScatterOf(feature);
+    const int marker = feature.first.seen.marker;
+    seen.insert(marker);
+    if (scatter.is_noise || scatter.rms <= kAtRest * displacement) continue;
+    moving.insert(marker);
+    if (scatter.rms <= farthest) continue;
+    farthest = scatter.rms;
+    mover = marker;
+  }
+  // One alone among others is a wrong detection, which the fit rejects.
+  if (moving.empty() || (moving.size() == 1 && seen.size() > 2)) return "";
+  return fmt::format(
+      "the body moves in {}: {} of {} markers scatter more than noise does, marker {} the most, by "
+      "{:.3f} mm (standard deviation), beside displacements of {:.3f} mm. Known weights must hang "
+      "at "
+      "rest: give only the frames in which nothing moves any more, or single frames",
+      NameOf(state), moving.size(), seen.size(), scene.markers.points[mover].id, 1e3 * farthest,
+      1e3 * displacement);
+}
+
+std::vector<std::string> KnownStates::Moving(const scene::Scene& scene) const {
+  std::vector<std::string> moving;
+  for (const State& state : collected_) {
+    const std::string movement = Movement(state, scene);
+    if (!movement.empty()) moving.push_back(movement);
+  }
+  return moving;
+}
+
+std::string KnownStates::NameOf(const State& state) const {
+  return state.frames == 1 ? fmt::format("frame {}", state.first_frame)
+                           : fmt::format("frames {} to {}", state.first_frame, state.last_frame);
 }
 
 Eigen::Matrix3Xd KnownStates::Forces(const KnownWeights& weights) const {
@@ -105,9 +205,7 @@ std::vector<estimation::KnownState> KnownStates::Collected() const {
   std::vector<estimation::KnownState> states;
   for (const State& collected : collected_) {
     estimation::KnownState state;
-    state.name = collected.frames == 1
-                     ? fmt::format("frame {}", collected.first_frame)
-                     : fmt::format("frames {} to {}", collected.first_frame, collected.last_frame);
+    state.name = NameOf(collected);
     state.forces = Forces(weights_[collected.spec]);
     state.actuation = collected.actuation;
     state.group = collected.spec;

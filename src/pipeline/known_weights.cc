@@ -128,10 +128,14 @@ KnownWeights Parser::Parse(const std::string& spec) const {
   return weights;
 }
 
+bool IsFile(const std::string& spec) {
+  std::error_code ignored;  // a text that cannot be a name is no file
+  return std::filesystem::is_regular_file(spec, ignored);
+}
+
 // The lines of a file, or the spec itself.
 std::vector<std::string> Lines(const std::string& spec) {
-  std::error_code ignored;  // a text that cannot be a name is no file
-  if (!std::filesystem::is_regular_file(spec, ignored)) return {spec};
+  if (!IsFile(spec)) return {spec};
   std::ifstream stream(spec);
   if (!stream) throw base::InputError("--weights " + spec, "the file cannot be read");
   std::vector<std::string> lines;
@@ -165,6 +169,12 @@ std::vector<KnownWeights> ParseWeights(const std::vector<std::string>& specs,
                            kExample);
   }
   return all;
+}
+
+std::vector<std::filesystem::path> WeightsFiles(const std::vector<std::string>& specs) {
+  std::vector<std::filesystem::path> files;
+  std::copy_if(specs.begin(), specs.end(), std::back_inserter(files), IsFile);
+  return files;
 }
 
 }  // namespace softforce::pipeline

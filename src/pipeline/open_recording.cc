@@ -25,6 +25,17 @@ std::vector<std::filesystem::path> InputsOf(const scene::Scene& scene,
   return inputs;
 }
 
+std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene,
+                                           const std::vector<vision::Recording::Source>& sources) {
+  std::vector<std::filesystem::path> files = InputsOf(scene, sources);
+  if (!scene.simulation) return files;
+  for (const auto& file : {scene.simulation->mesh_file, scene.simulation->forces_file,
+                           scene.simulation->actuation_file}) {
+    if (file) files.push_back(*file);
+  }
+  return files;
+}
+
 vision::Recording OpenRecording(const scene::Scene& scene, const camera::Rig& rig,
                                 const std::vector<vision::Recording::Source>& sources,
                                 int first_frame, const std::string& asked_by) {

@@ -19,6 +19,10 @@ std::vector<vision::Recording::Source> SourcesOf(const scene::Scene& scene,
 std::vector<std::filesystem::path> InputsOf(const scene::Scene& scene,
                                             const std::vector<vision::Recording::Source>& sources);
 
+// Those, and the files that the section "simulation" names: what no job may overwrite.
+std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene,
+                                           const std::vector<vision::Recording::Source>& sources);
+
 // Opens the recording of a scene whose forces act at known places. Throws InputError if it cannot
 // be read, has live sources, or ends before `first_frame`.
 vision::Recording OpenRecording(const scene::Scene& scene, const camera::Rig& rig,

@@ -72,13 +72,30 @@ void RefuseToOverwrite(const std::vector<std::filesystem::path>& inputs,
   std::error_code ignored;  // a path that cannot be resolved is compared as it is
   const auto out = std::filesystem::weakly_canonical(out_folder, ignored);
   for (const std::filesystem::path& input : inputs) {
-    const auto folder = std::filesystem::weakly_canonical(input, ignored).parent_path();
-    if (folder != out && folder != out / "vtu") continue;
+    // A link is an input in its own folder, and where it leads to.
+    const auto here = std::filesystem::weakly_canonical(input.parent_path(), ignored);
+    const auto there = std::filesystem::weakly_canonical(input, ignored).parent_path();
+    if (here != out && here != out / "vtu" && there != out && there != out / "vtu") continue;
     throw base::InputError(
         "--out " + out_folder.string(),
         fmt::format("is the folder of the input {}, which results could overwrite",
                     input.filename().string()),
         "Choose a folder that holds none of the scene's files.");
+  }
+}
+
+void RefuseToReplace(const std::vector<std::filesystem::path>& inputs,
+                     const std::filesystem::path& out, const std::string& option) {
+  std::error_code ignored;  // a path that cannot be resolved is compared as it is
+  const auto resolved = std::filesystem::weakly_canonical(out, ignored);
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::weakly_canonical(input, ignored) != resolved &&
+        !std::filesystem::equivalent(input, out, ignored)) {
+      continue;
+    }
+    throw base::InputError(option + " " + out.string(),
+                           fmt::format("would replace the input {}", input.string()),
+                           "Choose a name that none of the scene's files has.");
   }
 }
 

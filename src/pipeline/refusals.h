@@ -22,6 +22,10 @@ void RefuseUnknownLocations(const scene::Scene& scene);
 void RefuseToOverwrite(const std::vector<std::filesystem::path>& inputs,
                        const std::filesystem::path& out);
 
+// A file to be written that is one of the inputs.
+void RefuseToReplace(const std::vector<std::filesystem::path>& inputs,
+                     const std::filesystem::path& out, const std::string& option);
+
 // Makes the folder for the results and removes what an earlier run left there under the same names,
 // so that a run that ends early cannot be mistaken for a complete one.
 void PrepareFolder(const std::filesystem::path& out);

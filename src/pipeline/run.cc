@@ -102,7 +102,7 @@ class Job {
 };
 
 vision::Recording Job::Open() const {
-  RefuseToOverwrite(InputsOf(scene_, sources_), options_.out);
+  RefuseToOverwrite(FilesOf(scene_, sources_), options_.out);
   return OpenRecording(scene_, rig_, sources_, options_.first_frame, "--frames");
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "pipeline/open_recording.h"
 #include "pipeline/refusals.h"
 #include "pipeline/result_tables.h"
 #include "pipeline/simulated_pictures.h"
@@ -66,10 +67,7 @@ class SimulationJob {
 };
 
 SimulatedWorld SimulationJob::Prepare() const {
-  std::vector<std::filesystem::path> inputs{scene_.file, scene_.mesh.file, scene_.cameras.rig};
-  if (scene_.actuation_file) inputs.push_back(*scene_.actuation_file);
-  if (simulation_.mesh_file) inputs.push_back(*simulation_.mesh_file);
-  RefuseToOverwrite(inputs, options_.out);
+  RefuseToOverwrite(FilesOf(scene_, SourcesOf(scene_, {})), options_.out);
   return BuildSimulatedWorld(scene_, simulation_);
 }
 
@@ -200,6 +198,8 @@ SimulateReport SimulationJob::Finish() {
     ProcessFrame(frame);
     if (options_.show_progress) progress.Update(frame + 1);
   }
+  report_.stopped = options_.stop != nullptr && *options_.stop;
+  if (report_.stopped) return report_;
   if (options_.show_progress) progress.Finish();
   Commit();
   return report_;

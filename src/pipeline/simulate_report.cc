@@ -15,8 +15,13 @@ std::string SimulateReport::FullReport() const {
                         pictures / picture_seconds);
   }
   for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
-  text += fmt::format("\nRecording: {}\nTry: softforce run {} --out {}\n", out.string(),
-                      (out / "scene.yaml").string(), (out / "results").string());
+  text += fmt::format("\nRecording: {}\n", out.string());
+  if (pictures > 0) {
+    text += fmt::format("Try: softforce run {} --out {}\n", (out / "scene.yaml").string(),
+                        (out / "results").string());
+  } else {
+    text += "It has no pictures, which softforce run needs: the markers are in markers3d.csv\n";
+  }
   return text;
 }
 

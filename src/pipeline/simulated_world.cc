@@ -47,12 +47,25 @@ scene::Scene DirectScene(const scene::Scene& scene, const scene::Simulation& sim
   return direct;
 }
 
+// Before they are taken for the scene's candidates, whose names they do not have.
+void RefuseForcesOffTheBody(const scene::Scene& scene, const scene::Simulation& simulation,
+                            const mesh::TetMesh& mesh) {
+  if (simulation.forces.empty()) return;
+  const mesh::Surface surface = mesh::ExtractSurface(mesh);
+  for (const scene::SimulatedForce& force : simulation.forces) {
+    PlaceOnSurface(surface, mesh.nodes, force.position,
+                   fmt::format("{}: simulation: forces: {}", scene.file.string(), force.name));
+  }
+}
+
 }  // namespace
 
 SimulatedWorld BuildSimulatedWorld(const scene::Scene& scene, const scene::Simulation& simulation) {
   SimulatedWorld simulated;
   simulated.scene = DirectScene(scene, simulation);
-  World world = BuildWorld(simulated.scene, DirectMesh(scene, simulation));
+  mesh::TetMesh mesh = DirectMesh(scene, simulation);
+  RefuseForcesOffTheBody(scene, simulation, mesh);
+  World world = BuildWorld(simulated.scene, std::move(mesh));
   for (const estimation::ForceSite& site : world.sites) simulated.force_places.push_back(site.at);
   for (const BodyPoint& marker : world.markers) {
     simulated.markers.push_back(marker.weights);
@@ -70,6 +83,11 @@ Eigen::VectorXd ToldAt(const scene::Scene& scene, const scene::Simulation& simul
   return (simulation.actuation ? *simulation.actuation : scene.actuation).At(time_s);
 }
 
+double OffsetOf(const scene::Actuator& actuator, const scene::Simulation& simulation) {
+  const auto own = simulation.actuator_offsets.find(actuator.name);
+  return own == simulation.actuator_offsets.end() ? actuator.offset : own->second;
+}
+
 simulation::Loading LoadingAt(const SimulatedWorld& world, const scene::Simulation& simulation,
                               double time_s) {
   simulation::Loading loading;
@@ -81,10 +99,8 @@ simulation::Loading LoadingAt(const SimulatedWorld& world, const scene::Simulati
   const std::vector<scene::Actuator>& actuators = world.scene.actuators;
   Eigen::VectorXd inputs = ToldAt(world.scene, simulation, time_s);
   for (size_t a = 0; a < actuators.size(); ++a) {
-    const auto offset = simulation.actuator_offsets.find(actuators[a].name);
-    if (offset == simulation.actuator_offsets.end()) continue;
     double& input = inputs(static_cast<Eigen::Index>(a));
-    input += offset->second;
+    input += OffsetOf(actuators[a], simulation);
     if (actuators[a].input == scene::ActuatorInput::kTension) input = std::max(0.0, input);
   }
   loading.actuation = ActuationOf(actuators, inputs);

@@ -28,6 +28,10 @@ SimulatedWorld BuildSimulatedWorld(const scene::Scene& scene, const scene::Simul
 simulation::Loading LoadingAt(const SimulatedWorld& world, const scene::Simulation& simulation,
                               double time_s);
 
+// How much more an actuator really does than it is told, N, m or Pa: what the section "simulation"
+// says, or else the offset with which the scene's own model reckons.
+double OffsetOf(const scene::Actuator& actuator, const scene::Simulation& simulation);
+
 // What the actuators are told, one number per actuator of the scene; N, m or Pa.
 Eigen::VectorXd ToldAt(const scene::Scene& scene, const scene::Simulation& simulation,
                        double time_s);

@@ -15,7 +15,8 @@ nlohmann::ordered_json TruthHeader(const scene::Scene& scene, const scene::Simul
                                    const SimulatedWorld& world, const camera::Rig* rig,
                                    const Eigen::Isometry3d& T_rig_robot);
 
-// truth.json of a simulated recording: what is to be found. Places in mm in the robot frame.
+// truth.json of a simulated recording: what is to be found. Places in mm in the robot frame, but in
+// the frame of the mesh if they are those of the body at rest.
 class TruthFile {
  public:
   // Without frames as yet. World, rig and simulation must outlive it.

@@ -84,8 +84,7 @@ Json SettingsOf(const scene::Scene& scene, const scene::Simulation& simulation,
                 const SimulatedWorld& world) {
   Json offsets = Json::object();
   for (const scene::Actuator& actuator : scene.actuators) {
-    const auto offset = simulation.actuator_offsets.find(actuator.name);
-    const double value = offset == simulation.actuator_offsets.end() ? 0 : offset->second;
+    const double value = OffsetOf(actuator, simulation);
     switch (actuator.input) {
       case scene::ActuatorInput::kTension:
         offsets[actuator.name + "_N"] = value;
@@ -140,7 +139,8 @@ nlohmann::ordered_json TruthHeader(const scene::Scene& scene, const scene::Simul
   if (!world.direct->body().cables.empty()) {
     truth["cables"] = Json::array();
     for (const fem::Cable& cable : world.direct->body().cables) {
-      truth["cables"].push_back({{"name", cable.name}, {"guide", Millimetres(cable.guide)}});
+      truth["cables"].push_back(
+          {{"name", cable.name}, {"guide", Millimetres(simulation.T_robot_mesh * cable.guide)}});
     }
   }
   truth["frames"] = Json::array();

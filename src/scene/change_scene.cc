@@ -25,6 +25,13 @@ std::string InUnitOf(const std::string& old, double value, base::Dimension dimen
   return fmt::format("{:.6g} {}", value / base::UnitInSi(unit, dimension, "unit"), unit);
 }
 
+// The file itself, where a link leads to it: that is replaced, and the link stays.
+fs::path Behind(const fs::path& file) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(file, error);
+  return error ? fs::absolute(file).lexically_normal() : canonical;
+}
+
 // A scene being changed.
 class Change {
  public:
@@ -58,8 +65,9 @@ std::string TextOf(const fs::path& file) {
 
 Change::Change(const fs::path& from, const fs::path& to)
     : from_(from),
-      to_(fs::absolute(to).lexically_normal()),
-      scene_(LoadScene(from, SceneFiles::kNone)),
+      to_(Behind(to)),
+      // Paths in a scene that is changed in place stay, from whichever folder a link leads to it.
+      scene_(LoadScene(Behind(from) == to_ ? to_ : from, SceneFiles::kNone)),
       text_(TextOf(from)),
       root_(YAML::Load(text_)),
       edits_(text_) {}
@@ -130,6 +138,14 @@ void Change::MovePaths() {
   for (const auto& [camera, source] : scene_.cameras.sources) {
     MovePath(root_["cameras"]["sources"][camera], "sources: " + camera, source);
   }
+  if (!scene_.simulation) return;
+  const YAML::Node simulation = root_["simulation"];
+  const Simulation& old = *scene_.simulation;
+  if (old.mesh_file) MovePath(simulation["mesh"]["file"], "simulation: mesh: file", *old.mesh_file);
+  if (old.forces_file) MovePath(simulation["forces"], "simulation: forces", *old.forces_file);
+  if (old.actuation_file) {
+    MovePath(simulation["actuation"], "simulation: actuation", *old.actuation_file);
+  }
 }
 
 void Change::CheckReadsBack(const Scene& written, const SceneChanges& changes) const {
@@ -160,6 +176,16 @@ void Change::CheckReadsBack(const Scene& written, const SceneChanges& changes) c
     const std::string& now = written.cameras.sources.at(camera);
     good &= now == source || same_file(now, source);
   }
+  const auto same_or_none = [&](const std::optional<fs::path>& a,
+                                const std::optional<fs::path>& b) {
+    return a.has_value() == b.has_value() && (!a || same_file(*a, *b));
+  };
+  good &= same_or_none(written.actuation_file, scene_.actuation_file);
+  if (scene_.simulation) {
+    good &= same_or_none(written.simulation->mesh_file, scene_.simulation->mesh_file) &&
+            same_or_none(written.simulation->forces_file, scene_.simulation->forces_file) &&
+            same_or_none(written.simulation->actuation_file, scene_.simulation->actuation_file);
+  }
   if (good) return;
   throw base::InputError(from_.string(),
                          "its values cannot be replaced one by one: some stand in two places",
@@ -178,6 +204,10 @@ void Change::Write(const SceneChanges& changes) const {
     }
   }
   CheckReadsBack(LoadScene(file.temporary(), SceneFiles::kNone), changes);
+  std::error_code ignored;  // rights that cannot be kept are no reason to lose the values
+  if (fs::exists(to_, ignored)) {
+    fs::permissions(file.temporary(), fs::status(to_, ignored).permissions(), ignored);
+  }
   file.Commit();
 }
 

@@ -40,7 +40,12 @@ simulation::Occluder ReadOccluder(YamlMap& map) {
     occluder.reach = reach->Vector(Dimension::kLength);
   }
   occluder.diameter = map.Required("diameter").PositiveQuantity(Dimension::kLength);
-  if (const auto grey = map.Optional("grey")) occluder.grey = grey->Number();
+  if (const auto grey = map.Optional("grey")) {
+    occluder.grey = grey->Number();
+    if (!(occluder.grey >= 0 && occluder.grey <= 255)) {
+      grey->Fail(fmt::format("got {}, expected a grey level from 0 to 255", occluder.grey));
+    }
+  }
   return occluder;
 }
 

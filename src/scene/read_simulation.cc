@@ -55,12 +55,14 @@ void ReadRig(YamlMap& map, Simulation* simulation) {
 void ReadLoads(YamlMap& map, SceneFiles files, const Scene& scene, Simulation* simulation) {
   if (const auto forces = map.Optional("forces")) {
     simulation->forces = ReadSimulatedForces(*forces, files, scene);
+    if (!forces->IsList()) simulation->forces_file = FileOfSimulation(*forces, files);
   }
   if (const auto actuation = map.Optional("actuation")) {
     if (scene.actuators.empty()) actuation->Fail("the scene has no actuators");
-    const std::filesystem::path file = FileOfSimulation(*actuation, files);
-    if (ReadsFilesOfSimulation(files))
-      simulation->actuation = ReadActuationTable(file, scene.actuators);
+    simulation->actuation_file = FileOfSimulation(*actuation, files);
+    if (ReadsFilesOfSimulation(files)) {
+      simulation->actuation = ReadActuationTable(*simulation->actuation_file, scene.actuators);
+    }
   }
   if (const auto offsets = map.Optional("actuator_offsets")) {
     simulation->actuator_offsets =

@@ -109,6 +109,18 @@ TEST(Identify, OfWhatDoesNotShowIsNotUsable) {
   EXPECT_EQ(testing::ReadText(demo / "scene.yaml"), before);
 }
 
+TEST(Identify, AWeightThatIsStillBeingHungIsNotUsable) {
+  const Folder demo = testing::CopyOfDemo("identify_ramp");
+  const std::string before = testing::ReadText(demo / "scene.yaml");
+  const testing::ProgramResult identified = testing::RunProgram(
+      fmt::format("identify '{}' --weights '17:30: 0 = 0.559 N, 1 = 0.559 N' --in-place",
+                  (demo / "scene.yaml").string()));
+  EXPECT_EQ(identified.exit_code, 1) << identified.output;
+  EXPECT_NE(identified.output.find("the body moves in frames 17 to 29"), std::string::npos)
+      << identified.output;
+  EXPECT_EQ(testing::ReadText(demo / "scene.yaml"), before);
+}
+
 TEST(Identify, RefusesBadInput) {
   const Folder demo = testing::CopyOfDemo("identify_refusals");
   const std::string scene = (demo / "scene.yaml").string();
@@ -127,6 +139,18 @@ TEST(Identify, RefusesBadInput) {
   refused("--weights '29: none' --in-place -o other.yaml", "expected one of them");
   refused(fmt::format("--weights '29: none' -o '{}'", scene), "Use --in-place");
   refused("--weights '29: none' -o /nowhere/at/all.yaml", "/nowhere/at");
+  for (const char* input : {"sheet.msh", "rig.yaml", "left.mp4"}) {
+    const std::string before = testing::ReadText(demo / input);
+    refused(fmt::format("--weights '29: none' -o '{}'", (demo / input).string()),
+            "would replace the input");
+    EXPECT_EQ(testing::ReadText(demo / input), before);
+  }
+  testing::WriteText(demo / "weights.txt", "29: none\n");
+  refused(fmt::format("--weights '{0}' -o '{0}'", (demo / "weights.txt").string()),
+          "would replace the input");
+  EXPECT_EQ(testing::ReadText(demo / "weights.txt"), "29: none\n");
+  std::filesystem::create_directories(demo / "scene.partial.yaml/in the way");
+  refused("--weights '29: none' --in-place", "cannot be written");
   refused("--weights '29: none' --camera left", "expected NAME=SOURCE");
 }
 

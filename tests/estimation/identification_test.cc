@@ -302,6 +302,31 @@ TEST(Identification, WithoutEquilibriumSaysSo) {
   EXPECT_NE(found.reason.find("weights and their units"), std::string::npos) << found.reason;
 }
 
+TEST(Identification, ThatCannotFitSaysWhatToCheck) {
+  const testing::BarExperiment bar;
+  KnownState state = See(bar, kAside);
+  state.forces *= -1;
+
+  const Identification found = Identify(bar.body, {state}, {kModulus}, kRigIsExact);
+
+  EXPECT_FALSE(found.ok());
+  EXPECT_NE(found.reason.find("weights' signs, units and frames"), std::string::npos)
+      << found.reason;
+}
+
+TEST(Identification, EndsWhenItIsStopped) {
+  const testing::BarExperiment bar;
+  const KnownState state = See(bar, kAside);
+  const std::atomic<bool> stop{true};
+  IdentificationOptions options;
+  options.stop = &stop;
+
+  const Identification found = Identify(bar.body, {state}, {kModulus}, kRigIsExact, options);
+
+  EXPECT_EQ(found.status, Status::kStopped);
+  EXPECT_TRUE(found.values.empty());
+}
+
 TEST(Identification, OfNothingSeenIsAStatus) {
   const testing::BarExperiment bar;
   KnownState state = See(bar, kAside);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <random>
+
 namespace softforce::pipeline {
 namespace {
 
@@ -46,6 +49,49 @@ TEST(KnownStates, AveragesTheFramesOfOneShape) {
   const Eigen::Matrix3d information = mean.whitening.transpose() * mean.whitening;
   EXPECT_LT((information * kSd * kSd - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   EXPECT_EQ(states[1].observations[1].whitening.rows(), 2);  // what one camera saw
+}
+
+// Three markers of a scene in frames of one spec, and what is said of their movement.
+std::vector<std::string> MovementOf(const std::function<Eigen::Vector3d(int, int)>& shift) {
+  const scene::Scene scene = scene::LoadScene(kDemo);
+  const World world = BuildWorld(scene);
+  const std::vector<KnownWeights> weights = ParseWeights({"10:20: 0 = 0.5 N"}, scene);
+  KnownStates known(scene, world, weights);
+  for (int frame = 10; frame < 20; ++frame) {
+    std::vector<MarkerObservation> observations;
+    for (int marker = 0; marker < 3; ++marker) {
+      const BodyPoint& point = world.markers[marker];
+      const Eigen::Vector3d rest = point.weights.Apply(world.mesh().nodes) + point.offset;
+      observations.push_back(
+          Seen(marker, rest + Eigen::Vector3d(0, 0, -5e-3) + shift(frame, marker), marker == 2));
+      observations.back().seen.at = point.weights;
+      observations.back().seen.offset = point.offset;
+      observations.back().seen.marker = marker;
+    }
+    known.Add(frame, {}, observations);
+  }
+  return known.Moving(scene);
+}
+
+TEST(KnownStates, TellsOfABodyThatMovesInFramesOfOneSpec) {
+  // m; a ramp of a tenth of the displacement.
+  const auto moving =
+      MovementOf([](int frame, int) { return Eigen::Vector3d(0, 0, -5e-4 * (frame - 10) / 9); });
+  ASSERT_EQ(moving.size(), 1u);
+  EXPECT_NE(moving[0].find("the body moves in frames 10 to 19: 2 of 3 markers"),
+            std::string::npos)  // the third one is seen by one camera, and not along z
+      << moving[0];
+}
+
+TEST(KnownStates, IsAtRestInNoiseAndWithOneWrongDetection) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, kSd);
+  const auto shift = [&](int frame, int marker) {
+    Eigen::Vector3d off(noise(random), noise(random), noise(random));
+    if (frame == 14 && marker == 1) off.x() += 8e-3;  // m
+    return off;
+  };
+  EXPECT_TRUE(MovementOf(shift).empty());
 }
 
 TEST(KnownStates, KeepsFramesOfDifferentActuationApart) {

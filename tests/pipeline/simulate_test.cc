@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <sstream>
+#include <thread>
 
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/write_mesh.h"
@@ -174,6 +175,20 @@ TEST_F(Simulated, TellsLoadsAndActuationInTheTruth) {
             "time_s,pull_mm\n0.000000,0.0000000\n0.500000,2.5000000\n");
 }
 
+TEST_F(Simulated, PullsByTheOffsetOfTheSceneUnlessItHasItsOwn) {
+  std::string scene = kScene;
+  scene.replace(scene.find("patch: 6 mm}"), 12, "patch: 6 mm, offset: 0.5 mm}");
+  const std::string section = "  frames: 1\n  mesh: {refine: 0}\n  pictures: false\n";
+  const nlohmann::json as_known = Truth(Make(section, "known", scene));
+  const nlohmann::json other =
+      Truth(Make(section + "  actuator_offsets: {pull: 0.2 mm}\n", "other", scene));
+
+  // mm; nothing is told in frame 0.
+  EXPECT_NEAR(as_known["frames"][0]["cables"]["displacement"][0], 0.5, 1e-5);
+  EXPECT_NEAR(as_known["simulation"]["actuator_offsets"]["pull_mm"], 0.5, 1e-12);
+  EXPECT_NEAR(other["frames"][0]["cables"]["displacement"][0], 0.2, 1e-5);
+}
+
 TEST_F(Simulated, GivesTheSameFilesForOneSeedAndOthersForAnother) {
   const std::string section = "  frames: 1\n  mesh: {refine: 0}\n";
   const fs::path first = Make(section, "first"), again = Make(section, "again");
@@ -243,6 +258,9 @@ TEST_F(Simulated, MovesTheWholeBodyByARegistrationOffset) {
   const Eigen::Vector3d expected(1 - at_rest.y(), 2 + at_rest.x(), 3 + at_rest.z());
   EXPECT_LT((MarkerAt(moved, 0, 1) - expected).norm(), 1e-5);  // mm
   EXPECT_EQ(moved["frames"][1]["forces"][0]["F"], straight["frames"][1]["forces"][0]["F"]);
+  EXPECT_EQ(straight["cables"][0]["guide"], nlohmann::json({0, 60, 60}));
+  EXPECT_EQ(moved["cables"][0]["guide"], nlohmann::json({-59, 2, 63}));  // turned, then shifted
+  EXPECT_EQ(moved["markers"][1]["rest"], straight["markers"][1]["rest"]);
 }
 
 TEST_F(Simulated, TurnsTheForcesIntoTheFrameOfAMovedBody) {
@@ -293,6 +311,7 @@ TEST_F(Simulated, NeedsNoCamerasForMeasuredMarkers) {
   EXPECT_EQ(of_four, 1);
   EXPECT_FALSE(fs::exists(out / "left.mp4"));
   EXPECT_NE(ReadText(out / "scene.yaml").find("measured: markers3d.csv"), std::string::npos);
+  EXPECT_EQ(report_.FullReport().find("Try: softforce run"), std::string::npos);
 }
 
 TEST_F(Simulated, TellsTheFrameWithoutEquilibriumAndLeavesNothing) {
@@ -307,7 +326,7 @@ TEST_F(Simulated, TellsTheFrameWithoutEquilibriumAndLeavesNothing) {
 
 TEST_F(Simulated, RefusesWhatCannotBeSimulated) {
   EXPECT_NE(Refusal("  forces: [{position: 900 0 0 mm, history: [{time: 0 s, force: 0 0 1 N}]}]\n")
-                .find("off the body"),
+                .find("simulation: forces: P0: (900 0 0) mm lies 740 mm off the body"),
             std::string::npos);
   EXPECT_NE(Refusal("  mesh: {refine: 0}\n  pictures: {decoys: [500 0 0 mm]}\n").find("decoys"),
             std::string::npos);
@@ -333,6 +352,38 @@ TEST_F(Simulated, DoesNotWriteOverItsInputs) {
   EXPECT_EQ(ReadText(folder_ / "scene.yaml"), kScene);
 }
 
+TEST_F(Simulated, WritesIntoNoFolderThatHoldsAnyFileOfTheScene) {
+  const std::vector<std::pair<std::string, std::string>> named{
+      {"left.mp4", ""},
+      {"markers3d.csv", "  forces: kept/markers3d.csv\n"},
+      {"actuation.csv", "  actuation: kept/actuation.csv\n"},
+      {"plate.msh", "  mesh: {file: kept/plate.msh, unit: mm}\n"}};
+  fs::create_directories(folder_ / "kept");
+  fs::copy(folder_ / "plate.msh", folder_ / "kept");
+  fs::copy(folder_ / "actuation.csv", folder_ / "kept");
+  std::ofstream(folder_ / "kept/markers3d.csv") << "time_s,2_z_N\n0,0\n1,-0.2\n";
+  std::ofstream(folder_ / "kept/left.mp4") << "a video";
+  for (const auto& [file, section] : named) {
+    std::string scene = kScene;
+    if (file == "left.mp4") scene.replace(scene.find("left: left"), 10, "left: kept/left");
+    std::ofstream(folder_ / "scene.yaml")
+        << scene << "simulation:\n  frames: 1\n  pictures: false\n"
+        << section;
+    SimulateOptions options;
+    options.out = folder_ / "kept";
+    options.show_progress = false;
+    const std::string before = ReadText(folder_ / "kept" / file);
+
+    try {
+      Simulate(folder_ / "scene.yaml", options);
+      ADD_FAILURE() << file << " was not noticed";
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(file), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(ReadText(folder_ / "kept" / file), before);
+  }
+}
+
 TEST_F(Simulated, LeavesNothingWhenItIsStopped) {
   std::ofstream(folder_ / "scene.yaml") << kScene << "simulation: {mesh: {refine: 0}}\n";
   const std::atomic<bool> stop{true};
@@ -343,6 +394,27 @@ TEST_F(Simulated, LeavesNothingWhenItIsStopped) {
 
   EXPECT_TRUE(Simulate(folder_ / "scene.yaml", options).stopped);
 
+  EXPECT_TRUE(fs::is_empty(options.out));
+}
+
+TEST_F(Simulated, LeavesNothingWhenItIsStoppedInItsLastFrame) {
+  std::ofstream(folder_ / "scene.yaml")
+      << kScene << "simulation: {frames: 1, pictures: false, actuator_offsets: {pull: 5 mm}}\n";
+  std::atomic<bool> stop{false};
+  SimulateOptions options;
+  options.out = folder_ / "out";
+  options.show_progress = false;
+  options.stop = &stop;
+  // The table is begun just before the first frame, which takes a second.
+  std::thread stopper([&] {
+    while (!fs::exists(options.out / "markers3d.partial.csv")) std::this_thread::yield();
+    stop = true;
+  });
+
+  const SimulateReport report = Simulate(folder_ / "scene.yaml", options);
+  stopper.join();
+
+  EXPECT_TRUE(report.stopped);
   EXPECT_TRUE(fs::is_empty(options.out));
 }
 

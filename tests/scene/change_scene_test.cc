@@ -94,6 +94,38 @@ TEST(WriteChangedScene, KeepsPathsRightInAnotherFolder) {
   EXPECT_THAT(TextOf(file), HasSubstr("file: \"runs: #1/finger.msh\""));
 }
 
+TEST(WriteChangedScene, KeepsThePathsOfASimulationRight) {
+  const fs::path file = testing::WriteScene(
+      kPlain +
+      "simulation:\n  mesh: {file: fine.msh, unit: mm}\n  forces: loads.csv\n  actuation: "
+      "told.csv\n");
+  const fs::path folder = testing::TempFolder() / "elsewhere";
+  fs::create_directories(folder);
+
+  WriteChangedScene(file, {}, folder / "scene.yaml");
+
+  const Scene after = LoadScene(folder / "scene.yaml", SceneFiles::kNone);
+  EXPECT_EQ(after.simulation->mesh_file, testing::TempFolder() / "fine.msh");
+  EXPECT_EQ(after.simulation->forces_file, testing::TempFolder() / "loads.csv");
+  EXPECT_EQ(after.simulation->actuation_file, testing::TempFolder() / "told.csv");
+}
+
+TEST(WriteChangedScene, KeepsALinkAndThePermissionsOfTheFileBehindIt) {
+  const fs::path file = testing::WriteScene(kPlain);
+  const fs::perms owner_only = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(file, owner_only);
+  const fs::path link = testing::TempFolder() / "links" / "current.yaml";
+  fs::create_directories(link.parent_path());
+  fs::remove(link);
+  fs::create_symlink(file, link);
+
+  WriteChangedScene(file, {{{"soft", 300e3}}, {}, {}}, link);
+
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(TextOf(file), testing::Replaced(kPlain, "290 kPa", "300 kPa"));
+  EXPECT_EQ(fs::status(file).permissions(), owner_only);
+}
+
 TEST(WriteChangedScene, RefusesWhatIsNotWrittenOut) {
   const std::string with_alias =
       testing::Replaced(testing::Replaced(kPlain, "290 kPa", "&E 290 kPa"), "2 MPa", "*E");

@@ -186,6 +186,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"OccluderWithoutEnd",
                 "pictures: {occluders: [{position: 0 0 0 mm, to: 1 0 0 mm, diameter: 1 mm}]}",
                 "until"},
+        Refused{"OccluderTooLight",
+                "pictures: {occluders: [{position: 0 0 0 mm, diameter: 9 mm, grey: 256}]}",
+                "from 0 to 255"},
         Refused{"OccluderWithoutSize", "pictures: {occluders: [{position: 0 0 0 mm}]}",
                 "diameter"}),
     [](const auto& instance) { return std::string(instance.param.name); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <limits>
 #include <string>
 #include <vector>
@@ -52,8 +53,9 @@ struct IdentificationOptions {
   // An unknown is called unobservable if its standard deviation exceeds that of a guess.
   double guess_log_modulus = 0.5;
   double guess_poissons_ratio = 0.1;
-  double guess_shortening = 5e-3;  // m
-  double guess_tension = 1;        // N
+  double guess_shortening = 5e-3;           // m
+  double guess_tension = 1;                 // N
+  const std::atomic<bool>* stop = nullptr;  // set from outside: end with kStopped
 
   void Check() const;  // throws InputError naming the option
 };
@@ -85,7 +87,8 @@ struct Identification {
     kUnobservable,
     kOutOfRange,  // Poisson's ratio at the end of its range
     kNotConverged,
-    kInconsistent  // too many observations are impossible
+    kInconsistent,  // too many observations are impossible
+    kStopped        // from outside
   };
 
   Status status = Status::kNotRun;

@@ -20,7 +20,10 @@ struct IdentifyOptions {
   int registration_frames = 10;                // as for a run
   bool show_progress = true;
   TrackerOptions tracker;  // model errors and all: as for the runs that the values are meant for
-  const std::atomic<bool>* stop = nullptr;  // set from outside: end after this frame
+  const std::atomic<bool>* stop = nullptr;  // set from outside: end, with nothing usable
+  // Where the values will be written; must be none of the files of the job. Empty: nowhere, or into
+  // the scene itself.
+  std::filesystem::path out;
 
   void Check() const;  // throws InputError naming the option
 };
@@ -38,6 +41,7 @@ struct IdentifyReport {
   scene::SceneChanges changes;  // what to write into the scene; empty unless usable
   std::vector<KnownForce> forces;
   std::vector<std::string> warnings;
+  int frames_left_out = 0;  // of those with known forces: nothing was seen in them
   bool usable = false;
 
   std::string BriefReport() const;  // one line
@@ -46,7 +50,8 @@ struct IdentifyReport {
 
 // Finds numbers of a scene's body from frames of its recording in which the forces are known: plays
 // the recording as a run does, and fits the body to what was seen in those frames. Frames of one
-// spec under the same actuation are averaged. Throws InputError for input that cannot be used.
+// spec under the same actuation are averaged, and the body must be at rest in them. Throws
+// InputError for input that cannot be used.
 IdentifyReport Identify(const std::filesystem::path& scene_file, const IdentifyOptions& options);
 
 }  // namespace softforce::pipeline

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,5 +30,8 @@ extern const char* const kWeightsHelp;
 // that the scene does not have, a frame in two specs, …
 std::vector<KnownWeights> ParseWeights(const std::vector<std::string>& specs,
                                        const scene::Scene& scene);
+
+// Those of the specs that are names of files.
+std::vector<std::filesystem::path> WeightsFiles(const std::vector<std::string>& specs);
 
 }  // namespace softforce::pipeline

@@ -125,8 +125,11 @@ struct Simulation {
   std::map<std::string, fem::Material> materials;  // as the scene's; empty: the scene's
   // What acts on it.
   std::vector<SimulatedForce> forces;
-  std::optional<ActuationTable> actuation;         // nothing: the scene's
-  std::map<std::string, double> actuator_offsets;  // N, m or Pa more than told, by name
+  std::optional<std::filesystem::path> forces_file;     // the table they come from, if any
+  std::optional<std::filesystem::path> actuation_file;  // of `actuation`
+  std::optional<ActuationTable> actuation;              // nothing: the scene's
+  // N, m or Pa more than told, by name; an actuator without one has its offset of the scene.
+  std::map<std::string, double> actuator_offsets;
   Eigen::Isometry3d T_robot_mesh = Eigen::Isometry3d::Identity();  // where the body really stands
   // What is seen of it.
   simulation::MeasureOptions markers;
