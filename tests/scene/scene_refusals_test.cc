@@ -222,7 +222,8 @@ TEST(SceneRefusal, KeepsInputsToTheirActuators) {
 
 TEST(SceneRefusal, WantsAnUncertaintyInTheActuatorsUnit) {
   EXPECT_THAT(SceneRefusal("input: tension", "input: tension, uncertainty: 1 mm"),
-              HasSubstr("actuators[1]: uncertainty: \"1 mm\": got the unit \"mm\" of a length, expected a force"));
+              HasSubstr("actuators[1]: uncertainty: \"1 mm\": got the unit \"mm\" of a length, "
+                        "expected a force"));
   EXPECT_THAT(SceneRefusal("input: tension", "input: tension, uncertainty: 0 N"),
               HasSubstr("actuators[1]: uncertainty"));
 }
