@@ -83,7 +83,9 @@ struct Tangent {
       : elements(body),
         assembler(body, elements),
         u(Eigen::Matrix3Xd::Zero(3, body.mesh.num_nodes())),
-        cholesky((assembler.Assemble(elements, u, {}, {}), assembler.matrix())) {}
+        cholesky((assembler.Assemble(elements, u, Eigen::VectorXd::Zero(body.cables.size()),
+                                     std::vector<double>(body.chambers.size(), 0.0)),
+                  assembler.matrix())) {}
 };
 
 inline double Seconds(clockid_t clock) {
