@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "commands/camera_sources.h"
 #include "commands/commands.h"
 #include "commands/stop.h"
 #include "softforce/base/input_error.h"
@@ -62,14 +63,7 @@ int Identify(IdentifyArguments* arguments) {
   for (const std::string& name : arguments->unknowns) {
     options.unknowns.push_back(ParseUnknown(name));
   }
-  for (const std::string& camera : arguments->cameras) {
-    const size_t equals = camera.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw base::InputError("--camera", fmt::format("got \"{}\", expected NAME=SOURCE", camera),
-                             "Example: --camera left=left.mp4");
-    }
-    options.sources[camera.substr(0, equals)] = camera.substr(equals + 1);
-  }
+  options.sources = ParseCameraSources(arguments->cameras);
   const std::filesystem::path target = Target(*arguments);
   if (!arguments->in_place) options.out = target;
   options.stop = StopOnSignal();

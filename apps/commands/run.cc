@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 
+#include "commands/camera_sources.h"
 #include "commands/commands.h"
 #include "commands/stop.h"
 #include "softforce/base/input_error.h"
@@ -76,14 +77,7 @@ int Run(RunArguments* arguments) {
   options.overlay = !arguments->no_overlay;
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
-  for (const std::string& camera : arguments->cameras) {
-    const size_t equals = camera.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw base::InputError("--camera", fmt::format("got \"{}\", expected NAME=SOURCE", camera),
-                             "Example: --camera left=left.mp4");
-    }
-    options.sources[camera.substr(0, equals)] = camera.substr(equals + 1);
-  }
+  options.sources = ParseCameraSources(arguments->cameras);
   options.stop = StopOnSignal();
   const pipeline::RunReport report = pipeline::Run(arguments->scene, options);
   fmt::print("{}", report.FullReport());

@@ -134,7 +134,7 @@ bool LoadedBody::ComputeResponse(double max_staleness) {
 }
 
 bool LoadedBody::StepLinearly(const Eigen::VectorXd& loads, const fem::Actuation& told) {
-  // The response first: the step factorises the tangent at the pose, which is what it needs.
+  // The step factorises the tangent at the pose, from which the response there then follows.
   Pose trial = pose_;
   if (!solver_->LinearStep(LoadOf(loads, told), &trial.state)) return false;
   ++factorisations_;
