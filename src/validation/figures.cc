@@ -27,18 +27,30 @@ class Adder {
 
   void Alone() {
     Add("none", 0, "least squares", inexact_.alone, NAN);
-    Add("none", 0, "remedied", inexact_.remedied_alone, NAN);
+    Add("none", 0, "remedied", inexact_.remedied_alone.all, NAN);
+    Add("none", 0, "remedied, selected", inexact_.remedied_alone.selected, NAN);
   }
 
-  void Three(const char* error, const Sizes& sizes, double unit, const char* how,
+  void Three(const char* error, const Sizes& sizes, double unit, const std::string& how,
              const Errors& found, const std::vector<double>& paper) {
     for (size_t i = 0; i < sizes.size(); ++i) {
       Add(error, sizes[i] / unit, how, found[i], paper.empty() ? NAN : paper[i]);
     }
   }
 
+  void Three(const char* error, const Sizes& sizes, double unit, const std::string& how,
+             const std::array<ForceErrors, 3>& found, const std::vector<double>& paper) {
+    Errors all, selected;
+    for (size_t i = 0; i < sizes.size(); ++i) {
+      all[i] = found[i].all;
+      selected[i] = found[i].selected;
+    }
+    Three(error, sizes, unit, how, all, paper);
+    Three(error, sizes, unit, how + ", selected", selected, paper);
+  }
+
  private:
-  void Add(const char* error, double size, const char* how, double I_e, double paper) {
+  void Add(const char* error, double size, const std::string& how, double I_e, double paper) {
     figures_->push_back(
         {table_, inexact_.layout.name, error, size, "I_e", how, kMilli * I_e, paper});
   }
@@ -48,7 +60,7 @@ class Adder {
   std::vector<Figure>* figures_;
 };
 
-Errors Thrice(double value) { return {value, value, value}; }
+std::array<ForceErrors, 3> Thrice(const ForceErrors& value) { return {value, value, value}; }
 
 void AddInexact(const InexactCase& c, std::vector<Figure>* figures) {
   const PaperFigures& paper = FiguresOf(c.layout.name);

@@ -1,11 +1,14 @@
 #include "softforce/validation/inverse_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "softforce/validation/measures.h"
 
 namespace softforce::validation {
 namespace {
+
+constexpr double kRounding = 1e-9;  // share of a bound
 
 std::vector<estimation::ForceSite> Sites(const Model& model, const Layout& layout) {
   std::vector<estimation::ForceSite> sites;
@@ -48,8 +51,15 @@ void InverseModel::FreeRegistration() {
 
 void InverseModel::SetOffsets(const std::vector<Eigen::Vector3d>& offsets) { offsets_ = offsets; }
 
-double InverseModel::Error(const std::vector<Eigen::Vector3d>& seen,
-                           const fem::Actuation& actuation) {
+void InverseModel::SetLargestForce(double largest) {
+  largest_ = largest;
+  for (size_t site = 0; site < estimator_.sites().size(); ++site) {
+    Bound(static_cast<int>(site), largest);
+  }
+}
+
+std::vector<estimation::Observation> InverseModel::Observe(
+    const std::vector<Eigen::Vector3d>& seen) const {
   std::vector<estimation::Observation> observations;
   for (size_t i = 0; i < markers_.size(); ++i) {
     estimation::Observation observation;
@@ -59,8 +69,48 @@ double InverseModel::Error(const std::vector<Eigen::Vector3d>& seen,
     observation.whitening = Eigen::Matrix3d::Identity() / sd_;
     observations.push_back(observation);
   }
-  const estimation::ForceEstimate estimate = estimator_.Estimate(observations, actuation);
-  return estimate.ok() ? ForceError(estimate.intensity, applied_) : NAN;
+  return observations;
+}
+
+double InverseModel::ErrorOf(const estimation::ForceEstimate& estimate) const {
+  const bool answered =
+      estimate.ok() && estimate.intensity.lpNorm<Eigen::Infinity>() < (1 - kRounding) * largest_;
+  return answered ? ForceError(estimate.intensity, applied_) : NAN;
+}
+
+double InverseModel::Error(const std::vector<Eigen::Vector3d>& seen,
+                           const fem::Actuation& actuation) {
+  return ErrorOf(estimator_.Estimate(Observe(seen), actuation));
+}
+
+bool InverseModel::GiveUpWeak(const estimation::ForceEstimate& estimate, std::vector<char>* kept) {
+  std::vector<double> norms;
+  for (size_t site = 0; site < kept->size(); ++site) {
+    norms.push_back(estimator_.Force(estimate.intensity, static_cast<int>(site)).norm());
+  }
+  const double threshold = kSelectionThreshold * *std::max_element(norms.begin(), norms.end());
+  bool any = false;
+  for (size_t site = 0; site < kept->size(); ++site) {
+    if (!(*kept)[site] || norms[site] >= threshold) continue;
+    (*kept)[site] = false;
+    Bound(static_cast<int>(site), 0);
+    any = true;
+  }
+  return any;
+}
+
+ForceErrors InverseModel::SelectedError(const std::vector<Eigen::Vector3d>& seen,
+                                        const fem::Actuation& actuation) {
+  const std::vector<estimation::Observation> observations = Observe(seen);
+  estimation::ForceEstimate estimate = estimator_.Estimate(observations, actuation);
+  ForceErrors errors{ErrorOf(estimate), NAN};
+  std::vector<char> kept(estimator_.sites().size(), true);
+  while (estimate.ok() && GiveUpWeak(estimate, &kept)) {
+    estimate = estimator_.Estimate(observations, actuation);
+  }
+  errors.selected = ErrorOf(estimate);
+  SetLargestForce(largest_);
+  return errors;
 }
 
 Eigen::MatrixXd InverseModel::Compliance() const {

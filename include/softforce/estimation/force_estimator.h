@@ -46,7 +46,7 @@ struct EstimatorOptions {
   // its standard deviations.
   double tolerance = 0.05;
   double max_staleness =
-      2e-3;  // m, how far the body may move before the compliance is computed anew
+      3e-3;  // m, how far the body may move before the compliance is computed anew: 1 % of an sd
 
   void Check() const;  // throws InputError naming the option
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <limits>
 #include <vector>
 
 #include "softforce/estimation/force_estimator.h"
@@ -22,6 +22,18 @@ inline constexpr double kMarkerSd = 3e-5;        // m
 inline constexpr double kRegistrationSd = 1e-3;  // m
 inline constexpr double kOrientationSd = 1e-2;   // rad
 
+// A candidate is given up if its force is below this share of the largest (paper, Remark 5).
+inline constexpr double kSelectionThreshold = 0.25;
+
+// How far the forces of a frame are from those applied, I_e in N; NaN if there is no answer.
+struct ForceErrors {
+  double all = NAN;  // every candidate may carry a force
+  // The weakest candidates given up and the rest fitted anew, until none is left below the
+  // threshold (the paper's strategy for unknown locations, V). A loaded candidate that was given up
+  // counts with the force on it.
+  double selected = NAN;
+};
+
 // A layout's inverse model: finds the forces on its candidates from where its markers are.
 class InverseModel {
  public:
@@ -35,8 +47,16 @@ class InverseModel {
   // From now on markers are looked for so far (m) from where the model has them.
   void SetOffsets(const std::vector<Eigen::Vector3d>& offsets);
 
-  // The forces' error I_e (N) when the markers are at `seen`; NaN if there is no answer.
+  // From now on no force component is looked for beyond this (N): an estimate that ends there is no
+  // answer.
+  void SetLargestForce(double largest);
+
+  // The error with every candidate when the markers are at `seen`; NaN if there is no answer.
   double Error(const std::vector<Eigen::Vector3d>& seen, const fem::Actuation& actuation);
+
+  // The same, and with the candidates that the threshold leaves.
+  ForceErrors SelectedError(const std::vector<Eigen::Vector3d>& seen,
+                            const fem::Actuation& actuation);
 
   // W_ef (m/N) of the body as it is.
   Eigen::MatrixXd Compliance() const;
@@ -45,10 +65,18 @@ class InverseModel {
   estimation::ForceEstimator& estimator() { return estimator_; }
 
  private:
+  std::vector<estimation::Observation> Observe(const std::vector<Eigen::Vector3d>& seen) const;
+  double ErrorOf(const estimation::ForceEstimate& estimate) const;
+
+  // Gives up candidates that are weak in the estimate; whether there were any.
+  bool GiveUpWeak(const estimation::ForceEstimate& estimate, std::vector<char>* kept);
+  void Bound(int site, double largest) { estimator_.SetBounds(site, -largest, largest); }
+
   std::vector<mesh::NodalWeights> markers_;
   std::vector<Eigen::Vector3d> offsets_;
   double sd_;
-  Eigen::VectorXd applied_;  // N, per component
+  double largest_ = std::numeric_limits<double>::infinity();  // N
+  Eigen::VectorXd applied_;                                   // N, per component
   estimation::ForceEstimator estimator_;
 };
 

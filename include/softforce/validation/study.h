@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "softforce/validation/discretisation.h"
+#include "softforce/validation/inverse_model.h"
 #include "softforce/validation/layout.h"
 
 namespace softforce::validation {
@@ -40,14 +41,14 @@ using Errors = std::array<double, 3>;
 // A layout of Table II or III.
 struct InexactCase {
   Layout layout;
-  double alone = NAN;           // plain least squares, nothing wrong but the discretisation
-  double remedied_alone = NAN;  // the remedies, nothing wrong but the discretisation
+  double alone = NAN;  // plain least squares, nothing wrong but the discretisation
   Errors modulus{}, markers{}, tension{};  // plain least squares; `tension`: robot only
   // Of the remedies. What calibration takes away does not depend on how much it was: one figure.
-  double modulus_remedied = NAN, tension_remedied = NAN;
-  Errors markers_remedied{};
-  Errors markers_untared{};     // robot: without the frame before the forces
-  double youngs_modulus = NAN;  // Pa, as calibrated from the worst of kWrongModuli
+  ForceErrors remedied_alone;  // nothing wrong but the discretisation
+  ForceErrors modulus_remedied, tension_remedied;
+  std::array<ForceErrors, 3> markers_remedied;
+  std::array<ForceErrors, 3> markers_untared;  // robot: without the frame before the forces
+  double youngs_modulus = NAN;                 // Pa, as calibrated from the worst of kWrongModuli
 };
 
 struct Study {

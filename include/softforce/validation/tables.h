@@ -15,9 +15,9 @@ struct Figure {
   std::string error;   // what the inverse model has wrong: "none", "modulus", "markers", "tension"
   double size = 0;     // of it: kPa, mm or N
   std::string quantity;  // "I_w" or "I_e"
-  std::string how;       // "converged", "linear", "least squares", "remedied", "not tared"
-  double value = NAN;    // I_e in mN, I_w in N/mm
-  double paper = NAN;    // the same in the paper
+  std::string how;  // "converged", "linear", "least squares", "remedied", "remedied, selected", …
+  double value = NAN;  // I_e in mN, I_w in N/mm
+  double paper = NAN;  // the same in the paper
 };
 
 // All figures, in the order of the tables.
