@@ -28,6 +28,13 @@ estimation::EstimatorOptions LeastSquares(double tolerance) {
   return options;
 }
 
+geometry::Matrix6d RegistrationCovariance() {
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  covariance.diagonal().head<3>().setConstant(kRegistrationSd * kRegistrationSd);
+  covariance.diagonal().tail<3>().setConstant(kOrientationSd * kOrientationSd);
+  return covariance;
+}
+
 InverseModel::InverseModel(const Model& model, fem::StaticSolver* solver, const Layout& layout,
                            const estimation::EstimatorOptions& options, double sd)
     : offsets_(layout.markers.size(), Eigen::Vector3d::Zero()),
@@ -43,10 +50,7 @@ InverseModel::InverseModel(const Model& model, fem::StaticSolver* solver, const 
 }
 
 void InverseModel::FreeRegistration() {
-  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
-  covariance.diagonal().head<3>().setConstant(kRegistrationSd * kRegistrationSd);
-  covariance.diagonal().tail<3>().setConstant(kOrientationSd * kOrientationSd);
-  estimator_.SetRegistrationCovariance(covariance);
+  estimator_.SetRegistrationCovariance(RegistrationCovariance());
 }
 
 void InverseModel::SetOffsets(const std::vector<Eigen::Vector3d>& offsets) { offsets_ = offsets; }

@@ -83,11 +83,26 @@ TEST(RunInexact, RemediesTakeAwayWrongModuliAndWrongPlacesOfMarkers) {
 
   testing::Record("A, plain, mN", 1e3 * found.modulus[2]);
   testing::Record("A, remedied, mN", 1e3 * found.modulus_remedied.all);
+  testing::Record("A, remedied, selected, mN", 1e3 * found.modulus_remedied.selected);
   testing::Record("B, plain, mN", 1e3 * found.markers[2]);
   testing::Record("B, remedied, mN", 1e3 * found.markers_remedied[2].all);
   EXPECT_NEAR(found.youngs_modulus, 300e3, 3e3);  // Pa; 1 %, what the discretisations differ by
   EXPECT_LT(found.modulus_remedied.all, 0.2 * found.modulus[2]);
   EXPECT_LT(found.markers_remedied[2].all, 0.2 * found.markers[2]);  // the promise of Table II
+}
+
+TEST(RunInexact, GivesUpCandidatesThatCarryNoForceAndKeepsThoseThatDo) {
+  const mesh::TetMesh truth = Sheet(9e-3), coarse = Sheet(12e-3);
+  const auto layouts = Named(SheetLayouts(), {"s4"});
+
+  const InexactCase found =
+      RunInexact(BodyKind::kSheet, {coarse, coarse, truth}, layouts, Quiet()).front();
+
+  testing::Record("all, mN", 1e3 * found.remedied_alone.all);
+  testing::Record("selected, mN", 1e3 * found.remedied_alone.selected);
+  // A loaded candidate given up would cost 400 mN, an idle one kept most of what it costs now.
+  EXPECT_LT(found.remedied_alone.selected, 0.3 * found.remedied_alone.all);
+  EXPECT_LT(found.remedied_alone.selected, 0.1);  // N
 }
 
 TEST(RefineAtEdges, CutsOnlySomeCells) {

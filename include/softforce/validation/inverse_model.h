@@ -34,6 +34,8 @@ struct ForceErrors {
   double selected = NAN;
 };
 
+geometry::Matrix6d RegistrationCovariance();
+
 // A layout's inverse model: finds the forces on its candidates from where its markers are.
 class InverseModel {
  public:
