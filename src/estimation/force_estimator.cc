@@ -20,8 +20,9 @@ void EstimatorOptions::Check() const {
           "must be at least 0 and below 1");
   require(force_walk > 0, "force_walk", "must be greater than 0 N");
   require(loss_scale > 0, "loss_scale", "must be greater than 0");
-  require(rejection_probability > 0 && rejection_probability < 1, "rejection_probability",
-          "must lie between 0 and 1");
+  // Below, 1 − probability is 1 in double precision.
+  require(rejection_probability >= 1e-15 && rejection_probability < 1, "rejection_probability",
+          "must be at least 1e-15 and below 1");
   require(max_rejected_share >= 0 && max_rejected_share < 1, "max_rejected_share",
           "must be at least 0 and below 1");
   require(min_singular_ratio > 0, "min_singular_ratio", "must be greater than 0");

@@ -83,6 +83,20 @@ std::vector<Unknown> UnknownsOf(const scene::Scene& scene, const mesh::TetMesh& 
   return unknowns;
 }
 
+// While the recording is followed, cables whose offset is looked for may be off: markers that stand
+// where a wrong offset does not have them would be rejected.
+scene::Scene ToFollow(scene::Scene scene, const std::vector<Kind>& unknowns) {
+  if (std::count(unknowns.begin(), unknowns.end(), Kind::kCableOffset) == 0) return scene;
+  const estimation::IdentificationOptions guess;
+  for (scene::Actuator& actuator : scene.actuators) {
+    if (actuator.type != scene::ActuatorType::kCable) continue;
+    const bool tension = actuator.input == scene::ActuatorInput::kTension;
+    actuator.uncertainty =
+        std::max(actuator.uncertainty, tension ? guess.guess_tension : guess.guess_shortening);
+  }
+  return scene;
+}
+
 int LastFrame(const std::vector<KnownWeights>& weights) {
   int last = 0;
   for (const KnownWeights& known : weights) last = std::max(last, known.end_frame - 1);
@@ -94,7 +108,7 @@ class Job {
  public:
   Job(const std::filesystem::path& scene_file, const IdentifyOptions& options)
       : options_(options),
-        scene_(scene::LoadScene(scene_file)),
+        scene_(ToFollow(scene::LoadScene(scene_file), options.unknowns)),
         rig_(scene::LoadRig(scene_.cameras.rig)),
         sources_(ProtectedSources()),
         weights_(ParseWeights(options.weights, scene_)),
@@ -116,6 +130,7 @@ class Job {
   void Warn(const std::string& warning) { report_.warnings.push_back(warning); }
   void EstimateForcesAgain(const std::vector<estimation::KnownState>& states);
   scene::SceneChanges Changes() const;
+  void AddOffsetsOfScene();
 
   const IdentifyOptions& options_;
   const scene::Scene scene_;
@@ -240,6 +255,19 @@ scene::SceneChanges Job::Changes() const {
   return changes;
 }
 
+// Offsets of cables as the scene has them: from what the cable is told, not from the old offset.
+void Job::AddOffsetsOfScene() {
+  for (size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].kind != Kind::kCableOffset) continue;
+    int cable = 0;
+    for (const scene::Actuator& actuator : scene_.actuators) {
+      if (actuator.type != scene::ActuatorType::kCable || cable++ != unknowns_[i].cable) continue;
+      report_.found.values[i].start += actuator.offset;
+      report_.found.values[i].value += actuator.offset;
+    }
+  }
+}
+
 IdentifyReport Job::Finish() {
   if (!PlayRecording()) return report_;
   const std::vector<std::string> moving = known_.Moving(scene_);
@@ -261,6 +289,7 @@ IdentifyReport Job::Finish() {
   if (!report_.found.ok()) return report_;
   report_.changes = Changes();
   EstimateForcesAgain(states);
+  AddOffsetsOfScene();
   report_.usable = !Stopped();
   return report_;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "acceptance/program.h"
 
@@ -73,16 +74,30 @@ TEST(Identify, AModulusThreeTimesTooLargeIsPutRight) {
   EXPECT_NE(identified.output.find("The model fits"), std::string::npos) << identified.output;
 }
 
-TEST(Identify, CableOffsetAndModulusOfTheRobot) {
+TEST(Identify, CableOffsetAndModulusOfTheRobotFromAWrongStart) {
   const Folder robot = kShared / "robot_tip_weight";
   if (!std::filesystem::exists(robot)) GTEST_SKIP() << "no recording at " << robot;
   const Folder out = testing::FreshFolder("identify_robot");
+  const Folder wrong = testing::FreshFolder("identify_robot_wrong");
+  std::filesystem::copy(robot, wrong, std::filesystem::copy_options::recursive);
+  for (const char* guide : {"guide: 5 0 6 mm,", "guide: 0 5 6 mm,"}) {
+    testing::Edit(wrong / "scene.yaml", guide, std::string(guide) + " offset: 1.5 mm,");
+  }
   const testing::ProgramResult identified = testing::RunProgram(fmt::format(
       "identify '{}' --weights '0:10: none' --weights '27: 0 = 0.859 N' --unknown youngs_modulus "
       "--unknown cable_offset -o '{}'",
-      (robot / "scene.yaml").string(), (out / "robot.yaml").string()));
+      (wrong / "scene.yaml").string(), (out / "robot.yaml").string()));
   ASSERT_EQ(identified.exit_code, 0) << identified.output << identified.errors;
   std::cout << identified.output;
+  for (const char* cable : {"cable1", "cable2"}) {
+    const std::string line = "offset of " + std::string(cable);
+    const size_t at = identified.output.find(line);
+    ASSERT_NE(at, std::string::npos);
+    double start = NAN, value = NAN;  // mm
+    std::sscanf(identified.output.c_str() + at + line.size(), "%lf -> %lf", &start, &value);
+    EXPECT_EQ(start, 1.5);
+    EXPECT_NEAR(value, 0, 0.05);  // eight of its standard deviations
+  }
   const testing::ProgramResult run =
       testing::RunProgram(fmt::format("run '{}' --out '{}' --no-overlay",
                                       (out / "robot.yaml").string(), (out / "results").string()));
