@@ -13,8 +13,11 @@ find_package(CLI11 2.1 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
+find_package(TBB 2021 REQUIRED COMPONENTS tbb)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(GSTREAMER REQUIRED IMPORTED_TARGET gstreamer-1.0>=1.22 gstreamer-app-1.0 gstreamer-video-1.0)
 
 # These ship no usable CMake package: SuiteSparse 5.12, OpenBLAS's own thread control, AprilTag, Gmsh, FFmpeg.
 function(softforce_import name header library)
@@ -31,10 +34,13 @@ find_library(apriltag-utils_LIBRARY apriltag-utils REQUIRED)
 target_link_libraries(AprilTag::AprilTag INTERFACE ${apriltag-utils_LIBRARY})
 softforce_import(Gmsh::Gmsh gmsh.h gmsh)
 softforce_import(FFmpeg::FFmpeg libavcodec/avcodec.h avcodec)  # its headers come with libopencv-dev
-foreach(library avformat avutil)
+foreach(library avformat avutil swscale)
   find_library(${library}_LIBRARY ${library} REQUIRED)
   target_link_libraries(FFmpeg::FFmpeg INTERFACE ${${library}_LIBRARY})
 endforeach()
+
+add_library(GStreamer::App INTERFACE IMPORTED GLOBAL)
+target_link_libraries(GStreamer::App INTERFACE PkgConfig::GSTREAMER)
 
 if(SOFTFORCE_BUILD_TESTS)
   find_package(GTest REQUIRED)

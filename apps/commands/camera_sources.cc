@@ -14,7 +14,11 @@ std::map<std::string, std::string> ParseCameraSources(const std::vector<std::str
       throw base::InputError("--camera", fmt::format("got \"{}\", expected NAME=SOURCE", camera),
                              "Example: --camera left=left.mp4");
     }
-    sources[camera.substr(0, equals)] = camera.substr(equals + 1);
+    const std::string name = camera.substr(0, equals);
+    if (!sources.emplace(name, camera.substr(equals + 1)).second) {
+      throw base::InputError("--camera", fmt::format("camera \"{}\" is given twice", name),
+                             "Give each camera a name of its own.");
+    }
   }
   return sources;
 }

@@ -14,6 +14,7 @@ struct Command {
 
 Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
+Command AddRecord(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);
 Command AddValidate(CLI::App* program);

@@ -5,6 +5,7 @@
 
 #include "commands/camera_sources.h"
 #include "commands/commands.h"
+#include "commands/live_options.h"
 #include "commands/stop.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/quantity.h"
@@ -20,6 +21,8 @@ struct RunArguments {
   std::string frames;
   std::string correct_mesh = "none";
   std::string method, force_walk;
+  std::string duration, record;
+  LiveArguments live;
   bool no_overlay = false;
   pipeline::RunOptions options;
 };
@@ -73,6 +76,13 @@ int Run(RunArguments* arguments) {
     estimator.force_walk =
         base::ParseQuantity(arguments->force_walk, base::Dimension::kForce, 1, "--force-walk")[0];
   }
+  if (!arguments->duration.empty()) {
+    options.duration_s =
+        base::ParseQuantity(arguments->duration, base::Dimension::kTime, 1, "--duration")[0];
+  }
+  options.record = arguments->record;
+  options.live = ParseLiveOptions(arguments->live);
+  options.time_offsets_s = ParseTimeOffsets(arguments->live);
   options.out = arguments->out;
   options.overlay = !arguments->no_overlay;
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
@@ -89,14 +99,23 @@ int Run(RunArguments* arguments) {
 Command AddRun(CLI::App* program) {
   auto arguments = std::make_shared<RunArguments>();
   arguments->out = arguments->options.out.string();
-  CLI::App* app = program->add_subcommand("run", "Estimate forces from the scene's recording");
+  CLI::App* app =
+      program->add_subcommand("run", "Estimate forces from the scene's recording, or live");
   app->add_option("scene", arguments->scene, "Scene file (scene.yaml)")->required();
   app->add_option("--out", arguments->out, "Folder for the results")->capture_default_str();
   app->add_option("--camera", arguments->cameras,
-                  "NAME=SOURCE: video file of a camera instead of the scene's; may be repeated")
+                  "NAME=SOURCE: video file of a camera instead of the scene's, or its live source: "
+                  "device (/dev/video0), URL (rtsp://, http://, tcp://) or GStreamer pipeline; may "
+                  "be repeated")
       ->allow_extra_args(false);
   app->add_option("--frames", arguments->frames,
                   "A:B: frames A up to but not including B, counted from 0; default all");
+  app->add_option("--duration", arguments->duration,
+                  "End after so much time, as \"60 s\"; default: at the end of the recording, or "
+                  "with Ctrl-C");
+  app->add_option("--record", arguments->record,
+                  "Folder: also write the frames that are processed there, without loss, to run "
+                  "them again");
   app->add_option("--registration-frames", arguments->options.registration_frames,
                   "Frames searched for base fiducials to find where the cameras stand")
       ->capture_default_str();
@@ -123,10 +142,15 @@ Command AddRun(CLI::App* program) {
          "Correct the mesh's own error as far as the once refined mesh shows it (refined), "
          "or to the estimated limit (converged); model errors shrink with it")
       ->option_text("none|refined|converged [none]");
+  app->add_option("--threads", arguments->options.threads,
+                  "Threads that share the work; 0: as many as there are cores. The tables do not "
+                  "depend on it")
+      ->capture_default_str();
   app->add_option("--overlay-width", arguments->options.overlay_width, "Width of overlay.mp4, px")
       ->capture_default_str();
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
   app->add_flag("--vtu", arguments->options.vtu, "Write a ParaView series (results.pvd)");
+  AddLiveOptions(app, &arguments->live);
   return {app, [arguments] { return Run(arguments.get()); }};
 }
 

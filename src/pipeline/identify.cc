@@ -117,7 +117,8 @@ class Job {
         world_(BuildWorld(scene_)),
         unknowns_(UnknownsOf(scene_, world_.mesh(), options)),
         detector_(scene_),
-        standing_(FindRig(scene_, rig_, detector_, options.registration_frames, &recording_)),
+        standing_(FindRig(scene_, rig_, detector_,
+                          FirstFramesOf(&recording_, options.registration_frames))),
         known_(scene_, world_, weights_) {}
 
   IdentifyReport Finish();

@@ -4,6 +4,7 @@
 
 #include "pipeline/refusals.h"
 #include "softforce/base/input_error.h"
+#include "softforce/vision/live_cameras.h"
 
 namespace softforce::pipeline {
 
@@ -21,8 +22,23 @@ std::vector<std::filesystem::path> InputsOf(const scene::Scene& scene,
                                             const std::vector<vision::Recording::Source>& sources) {
   std::vector<std::filesystem::path> inputs{scene.file, scene.mesh.file, scene.cameras.rig};
   if (scene.actuation_file) inputs.push_back(*scene.actuation_file);
-  for (const vision::Recording::Source& source : sources) inputs.push_back(source.file);
+  for (const vision::Recording::Source& source : sources) {
+    if (!vision::IsLive(source.file.string())) inputs.push_back(source.file);
+  }
   return inputs;
+}
+
+bool AreLive(const std::vector<vision::Recording::Source>& sources) {
+  const vision::Recording::Source *live = nullptr, *file = nullptr;
+  for (const vision::Recording::Source& source : sources) {
+    (vision::IsLive(source.file.string()) ? live : file) = &source;
+  }
+  if (live == nullptr || file == nullptr) return live != nullptr;
+  throw base::InputError(
+      "cameras: sources",
+      fmt::format("camera \"{}\" is live ({}), but camera \"{}\" is the file {}", live->camera,
+                  live->file.string(), file->camera, file->file.string()),
+      "Give live sources for all cameras, or files for all.");
 }
 
 std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene,

@@ -15,13 +15,16 @@ namespace softforce::pipeline {
 std::vector<vision::Recording::Source> SourcesOf(const scene::Scene& scene,
                                                  const std::map<std::string, std::string>& instead);
 
-// Every file that a job on the scene reads.
+// Every file that a job on the scene reads; of live cameras none.
 std::vector<std::filesystem::path> InputsOf(const scene::Scene& scene,
                                             const std::vector<vision::Recording::Source>& sources);
 
 // Those, and the files that the section "simulation" names: what no job may overwrite.
 std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene,
                                            const std::vector<vision::Recording::Source>& sources);
+
+// Whether they are live cameras rather than files. Throws InputError for a mixture.
+bool AreLive(const std::vector<vision::Recording::Source>& sources);
 
 // Opens the recording of a scene whose forces act at known places. Throws InputError if it cannot
 // be read, has live sources, or ends before `first_frame`.

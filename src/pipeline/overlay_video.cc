@@ -66,8 +66,8 @@ OverlayVideo::OverlayVideo(const std::filesystem::path& file, const scene::Scene
       width_(width),
       writer_(file, kOverlayRate) {}
 
-void OverlayVideo::Add(const vision::FrameSet& frame, const FrameResult& result,
-                       const Eigen::Matrix3Xd& u) {
+cv::Mat OverlayVideo::Draw(const vision::FrameSet& frame, const FrameResult& result,
+                           const Eigen::Matrix3Xd& u) const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + u;
   const render::OverlayScene content = Content(scene_, world_, result, x);
   std::vector<cv::Mat> pictures;
@@ -78,7 +78,7 @@ void OverlayVideo::Add(const vision::FrameSet& frame, const FrameResult& result,
                                            camera.T_camera_rig * T_rig_robot_, content));
     names.push_back(camera.name);
   }
-  writer_.Add(render::SideBySide(pictures, names, width_));
+  return render::SideBySide(pictures, names, width_);
 }
 
 }  // namespace softforce::pipeline

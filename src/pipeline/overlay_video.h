@@ -16,7 +16,11 @@ class OverlayVideo {
   OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene, const World& world,
                const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot, int width);
 
-  void Add(const vision::FrameSet& frame, const FrameResult& result, const Eigen::Matrix3Xd& u);
+  // May be called from several threads.
+  cv::Mat Draw(const vision::FrameSet& frame, const FrameResult& result,
+               const Eigen::Matrix3Xd& u) const;
+
+  void Add(const cv::Mat& drawn) { writer_.Add(drawn); }
   void Commit() { writer_.Commit(); }
 
  private:

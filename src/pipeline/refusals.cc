@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "softforce/base/input_error.h"
+#include "softforce/vision/live_cameras.h"
 
 namespace softforce::pipeline {
 namespace {
@@ -45,17 +46,12 @@ void MakeFolder(const std::filesystem::path& out) {
 void RefuseLiveSources(const scene::Scene& scene,
                        const std::vector<vision::Recording::Source>& sources) {
   for (const vision::Recording::Source& source : sources) {
-    const std::string name = source.file.string();
-    std::error_code ignored;
-    if (std::filesystem::exists(source.file, ignored) && name.rfind("/dev/", 0) != 0) continue;
-    if (name.find("://") == std::string::npos && name.find('!') == std::string::npos &&
-        name.rfind("/dev/", 0) != 0) {
-      continue;
-    }
+    if (!vision::IsLive(source.file.string())) continue;
     throw base::InputError(
         scene.file.string() + ": cameras: sources: " + source.camera,
-        fmt::format("\"{}\" is a live source, but this version reads files only", name),
-        "Record the cameras to files first.");
+        fmt::format("\"{}\" is a live source, but only a recording will do here",
+                    source.file.string()),
+        "Record the cameras first, with softforce record or with softforce run --record.");
   }
 }
 

@@ -28,15 +28,15 @@ std::vector<vision::Tag> Detector::Tags(const cv::Mat& picture, const std::strin
   return detectors_.at(family).Detect(picture);
 }
 
+CameraDetections Detector::Markers(const cv::Mat& picture) const {
+  if (scene_.markers.type == scene::MarkerType::kDot) return {vision::DetectDots(picture), {}};
+  return {{}, Tags(picture, scene_.markers.family)};
+}
+
 std::vector<CameraDetections> Detector::Markers(const vision::FrameSet& frame) const {
-  std::vector<CameraDetections> cameras(frame.pictures.size());
-  for (size_t c = 0; c < cameras.size(); ++c) {
-    if (scene_.markers.type == scene::MarkerType::kDot) {
-      cameras[c].dots = vision::DetectDots(frame.pictures[c]);
-    } else {
-      cameras[c].tags = Tags(frame.pictures[c], scene_.markers.family);
-    }
-  }
+  std::vector<CameraDetections> cameras;
+  cameras.reserve(frame.pictures.size());
+  for (const cv::Mat& picture : frame.pictures) cameras.push_back(Markers(picture));
   return cameras;
 }
 
@@ -54,8 +54,19 @@ std::vector<std::vector<vision::Tag>> Detector::Fiducials(const vision::FrameSet
   return cameras;
 }
 
+ShowFirstFrames FirstFramesOf(vision::Recording* recording, int frames) {
+  return [recording, frames](const std::function<void(const vision::FrameSet&)>& look) {
+    for (int i = 0; i < frames; ++i) {
+      const std::optional<vision::FrameSet> frame = recording->Next();
+      if (!frame) break;
+      look(*frame);
+    }
+    recording->Rewind();
+  };
+}
+
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
-                 int frames, vision::Recording* recording) {
+                 const ShowFirstFrames& show) {
   if (scene.cameras.fiducials.empty()) {
     if (rig.T_rig_robot) return {*rig.T_rig_robot, geometry::Matrix6d::Zero(), std::nullopt};
     throw base::InputError(
@@ -65,12 +76,11 @@ Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detect
         "Fix AprilTags to the robot's base and list their corners under 'fiducials'.");
   }
   calibration::FiducialRegistration registration(rig, scene.cameras.fiducials);
-  for (int i = 0; i < frames; ++i) {
-    const std::optional<vision::FrameSet> frame = recording->Next();
-    if (!frame) break;
-    registration.Add(detector.Fiducials(*frame));
-  }
-  recording->Rewind();
+  int frames = 0;
+  show([&](const vision::FrameSet& frame) {
+    registration.Add(detector.Fiducials(frame));
+    ++frames;
+  });
   const vision::RigPose pose = registration.Solve();
   if (!pose.ok()) {
     throw base::InputError(scene.file.string() + ": cameras: fiducials",

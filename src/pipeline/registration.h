@@ -1,16 +1,19 @@
 #pragma once
 
+#include <functional>
+
 #include "softforce/pipeline/run.h"
 #include "softforce/vision/recording.h"
 #include "softforce/vision/rig_pose.h"
 
 namespace softforce::pipeline {
 
-// Detects what a scene's markers and fiducials need in the pictures of one frame.
+// Detects what a scene's markers and fiducials need in pictures; for one thread.
 class Detector {
  public:
   explicit Detector(const scene::Scene& scene);
 
+  CameraDetections Markers(const cv::Mat& picture) const;
   std::vector<CameraDetections> Markers(const vision::FrameSet& frame) const;
   std::vector<std::vector<vision::Tag>> Fiducials(const vision::FrameSet& frame) const;
 
@@ -21,15 +24,20 @@ class Detector {
   std::map<std::string, vision::TagDetector> detectors_;  // by family
 };
 
-// Where the rig stands: from the base fiducials in the first frames of the recording, which is
-// rewound after; or, for a scene without fiducials, as the rig's file says. Throws InputError if
-// neither works.
+// Shows the first frames of a source, one after another.
+using ShowFirstFrames = std::function<void(const std::function<void(const vision::FrameSet&)>&)>;
+
+// Those of a recording, which is rewound after.
+ShowFirstFrames FirstFramesOf(vision::Recording* recording, int frames);
+
+// Where the rig stands: from the base fiducials in the first frames; or, for a scene without
+// fiducials, as the rig's file says. Throws InputError if neither works.
 struct Standing {
   Eigen::Isometry3d T_rig_robot;
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // see vision::RigPose
   std::optional<vision::RigPose> from_fiducials;
 };
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
-                 int frames, vision::Recording* recording);
+                 const ShowFirstFrames& show);
 
 }  // namespace softforce::pipeline

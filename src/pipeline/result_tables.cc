@@ -79,7 +79,12 @@ void ResultTables::Add(const FrameResult& result) {
                Millimetres(marker.measured), Cell(1e3 * marker.sd, 4), Millimetres(marker.model),
                Cell(1e3 * (marker.measured - marker.model).norm(), 4));
   }
-  if (!actuation_) return;
+  forces_.Flush();
+  markers_.Flush();
+  if (actuation_) AddActuation(result, moment);
+}
+
+void ResultTables::AddActuation(const FrameResult& result, const std::string& moment) {
   for (const CableResult& cable : result.cables) {
     fmt::print(actuation_->stream(), "{},{},{},{}{}\n", moment, cable.name, Cell(cable.tension, 6),
                Cell(1e3 * cable.displacement, 5), kinds_.chambers ? "," : "");
@@ -88,6 +93,7 @@ void ResultTables::Add(const FrameResult& result) {
     fmt::print(actuation_->stream(), "{},{}{},{}\n", moment, chamber.name,
                kinds_.cables ? ",," : "", Cell(1e-3 * chamber.pressure, 5));
   }
+  actuation_->Flush();
 }
 
 void ResultTables::Commit() {

@@ -16,6 +16,7 @@ class PendingTable {
   PendingTable(const std::filesystem::path& path, const std::string& header);
 
   std::ostream& stream() { return stream_; }
+  void Flush() { stream_.flush(); }  // what was written survives the end of the program
 
   // Throws InputError if anything could not be written (disk full).
   void Commit();
@@ -36,10 +37,13 @@ class ResultTables {
  public:
   ResultTables(const std::filesystem::path& folder, ActuatorKinds kinds);
 
+  // The rows are in the partial files when it returns: a run that is killed loses none of them.
   void Add(const FrameResult& result);
   void Commit();
 
  private:
+  void AddActuation(const FrameResult& result, const std::string& moment);
+
   PendingTable forces_;
   PendingTable markers_;
   ActuatorKinds kinds_;

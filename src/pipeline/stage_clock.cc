@@ -5,24 +5,53 @@
 
 namespace softforce::pipeline {
 
-void StageClock::Book(const std::string& stage, double milliseconds) {
-  for (auto& [name, times] : times_ms_) {
-    if (name != stage) continue;
-    times.push_back(milliseconds);
-    return;
-  }
-  times_ms_.push_back({stage, {milliseconds}});
+StageClock::Stage& StageClock::Find(const std::string& stage) {
+  const auto known = std::find_if(stages_.begin(), stages_.end(),
+                                  [&](const Stage& one) { return one.name == stage; });
+  if (known != stages_.end()) return *known;
+  stages_.push_back({stage, {}, 0, 0, 0});
+  return stages_.back();
 }
 
-std::vector<StageClock::Percentiles> StageClock::Report() const {
-  std::vector<Percentiles> report;
-  for (auto [name, times] : times_ms_) {
-    std::sort(times.begin(), times.end());
-    const auto at = [&times = times](double share) {
-      return times[static_cast<size_t>(std::lround(share * static_cast<double>(times.size() - 1)))];
+void StageClock::Book(const std::string& stage, double milliseconds) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Find(stage).times_ms.push_back(static_cast<float>(milliseconds));
+}
+
+void StageClock::BookQueue(const std::string& stage, int waiting) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Stage& booked = Find(stage);
+  ++booked.taken_up;
+  booked.waiting += waiting;
+  booked.longest_queue = std::max(booked.longest_queue, waiting);
+}
+
+std::vector<StageTimes> StageClock::Report() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<StageTimes> report;
+  for (const Stage& stage : stages_) {
+    StageTimes times;
+    times.stage = stage.name;
+    times.count = static_cast<int>(stage.times_ms.size());
+    times.queued = stage.taken_up > 0;
+    if (times.queued) {
+      times.queue_mean = static_cast<double>(stage.waiting) / static_cast<double>(stage.taken_up);
+    }
+    times.queue_max = stage.longest_queue;
+    std::vector<float> sorted = stage.times_ms;
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = [&](double share) -> double {
+      if (sorted.empty()) return 0;
+      const auto last = static_cast<double>(sorted.size() - 1);
+      return sorted[static_cast<size_t>(std::lround(share * last))];
     };
-    report.push_back(
-        {name, static_cast<int>(times.size()), at(0.5), at(0.9), at(0.95), at(0.99), times.back()});
+    times.median_ms = at(0.5);
+    times.p90_ms = at(0.9);
+    times.p95_ms = at(0.95);
+    times.p99_ms = at(0.99);
+    times.max_ms = at(1);
+    for (const float ms : sorted) times.total_s += 1e-3 * ms;
+    report.push_back(times);
   }
   return report;
 }

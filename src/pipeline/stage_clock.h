@@ -1,13 +1,16 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "softforce/pipeline/stage_times.h"
 
 namespace softforce::pipeline {
 
-// How long each stage took in each frame.
+// How long each stage took in each frame, and how many frames waited for it. Stages may run on
+// several threads.
 class StageClock {
  public:
   // Runs `work` and books its time under `stage`.
@@ -17,12 +20,10 @@ class StageClock {
     return work();
   }
 
-  struct Percentiles {
-    std::string stage;
-    int count = 0;
-    double median_ms = 0, p90_ms = 0, p95_ms = 0, p99_ms = 0, max_ms = 0;
-  };
-  std::vector<Percentiles> Report() const;  // in the order of first use
+  // Books how many frames wait for the stage, while it takes one up.
+  void BookQueue(const std::string& stage, int waiting);
+
+  std::vector<StageTimes> Report() const;  // in the order of first use
 
  private:
   class Booking {
@@ -43,9 +44,18 @@ class StageClock {
     std::chrono::steady_clock::time_point start_;
   };
 
-  void Book(const std::string& stage, double milliseconds);
+  struct Stage {
+    std::string name;
+    std::vector<float> times_ms;
+    long long taken_up = 0, waiting = 0;  // frames; the sum of those that waited
+    int longest_queue = 0;
+  };
 
-  std::vector<std::pair<std::string, std::vector<double>>> times_ms_;
+  void Book(const std::string& stage, double milliseconds);
+  Stage& Find(const std::string& stage);  // with the mutex held
+
+  mutable std::mutex mutex_;
+  std::vector<Stage> stages_;
 };
 
 }  // namespace softforce::pipeline

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/frame_pipeline.h"
 #include "pipeline/result_tables.h"
 #include "softforce/base/sha256.h"
 #include "softforce/base/version.h"
@@ -34,18 +35,48 @@ Json Registration(const vision::RigPose& pose) {
           {"sd_rotation_mrad", {1e3 * sd(3), 1e3 * sd(4), 1e3 * sd(5)}}};
 }
 
+Json Live(const vision::SourceReport& source) {
+  Json live{{"sets_delivered", source.delivered}, {"sets_dropped", source.dropped}};
+  for (const vision::CameraReport& camera : source.cameras) {
+    live["cameras"][camera.camera] = {{"received", camera.received}, {"paired", camera.paired},
+                                      {"unpaired", camera.unpaired}, {"unsure", camera.unsure},
+                                      {"missed", camera.missed},     {"reopened", camera.reopened}};
+  }
+  return live;
+}
+
+// Of a camera's folder in a recording, its table of times stands for all.
+Json Input(const std::filesystem::path& input) {
+  const bool is_folder = std::filesystem::is_directory(input);
+  const std::filesystem::path file = is_folder ? input / "times.csv" : input;
+  const std::string name = input.filename().string() + (is_folder ? "/times.csv" : "");
+  return {{"file", name}, {"sha256", base::Sha256OfFile(file)}};
+}
+
+void AddStages(const std::vector<StageTimes>& stages, Json* json) {
+  for (const StageTimes& stage : stages) {
+    (*json)["stages_ms"][stage.stage] = {{"count", stage.count}, {"median", stage.median_ms},
+                                         {"p90", stage.p90_ms},  {"p95", stage.p95_ms},
+                                         {"p99", stage.p99_ms},  {"max", stage.max_ms}};
+  }
+  for (const StageTimes& stage : stages) {
+    if (!stage.queued) continue;
+    (*json)["queues"][stage.stage] = {{"mean", stage.queue_mean}, {"max", stage.queue_max}};
+  }
+}
+
 }  // namespace
 
 void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   Json json;
   json["softforce"] = base::kVersion;
   json["scene"] = facts.scene.name;
-  json["usable"] = facts.report.usable;
-  json["frames"] = {{"processed", facts.report.frames},
-                    {"with_forces", facts.report.usable_frames},
-                    {"by_status", facts.frame_statuses}};
-  json["markers_by_status"] = facts.marker_statuses;
-  json["warnings"] = facts.report.warnings;
+  json["usable"] = facts.tally.report.usable;
+  json["frames"] = {{"processed", facts.tally.report.frames},
+                    {"with_forces", facts.tally.report.usable_frames},
+                    {"by_status", facts.tally.frame_statuses}};
+  json["markers_by_status"] = facts.tally.marker_statuses;
+  json["warnings"] = facts.tally.report.warnings;
   json["model"] = {{"nodes", facts.world.mesh().num_nodes()},
                    {"cells", facts.world.mesh().num_elements()},
                    {"order", facts.world.mesh().order()}};
@@ -62,22 +93,24 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   }
   if (facts.registration) json["registration"] = Registration(*facts.registration);
 
-  if (!facts.reduced_chi2.empty()) {
-    std::vector<double> sorted = facts.reduced_chi2;
+  if (!facts.tally.reduced_chi2.empty()) {
+    std::vector<double> sorted = facts.tally.reduced_chi2;
     std::sort(sorted.begin(), sorted.end());
     json["chi2_per_degree_of_freedom"] = {{"median", sorted[sorted.size() / 2]},
                                           {"max", sorted.back()}};
   }
 
-  json["seconds"] = facts.report.seconds;
-  for (const StageClock::Percentiles& stage : facts.stages) {
-    json["stages_ms"][stage.stage] = {{"count", stage.count}, {"median", stage.median_ms},
-                                      {"p90", stage.p90_ms},  {"p95", stage.p95_ms},
-                                      {"p99", stage.p99_ms},  {"max", stage.max_ms}};
+  json["seconds"] = facts.tally.report.seconds;
+  AddStages(facts.tally.report.stages, &json);
+  if (facts.tally.report.live) json["live"] = Live(facts.tally.report.source);
+  if (facts.tally.report.recorded) {
+    const vision::RecorderReport& recorded = *facts.tally.report.recorded;
+    json["recorded"] = {{"sets", recorded.written}, {"bytes", recorded.bytes}};
   }
   const RunOptions& options = facts.options;
   json["options"] = {{"first_frame", options.first_frame},
                      {"registration_frames", options.registration_frames},
+                     {"threads", options.threads > 0 ? options.threads : DefaultThreads()},
                      {"overlay", options.overlay},
                      {"vtu", options.vtu},
                      {"method", estimation::Name(options.tracker.estimator.method)},
@@ -91,8 +124,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
     json["options"]["force_walk_N"] = options.tracker.estimator.force_walk;
   }
   for (const std::filesystem::path& input : facts.inputs) {
-    json["inputs"].push_back(
-        {{"file", input.filename().string()}, {"sha256", base::Sha256OfFile(input)}});
+    json["inputs"].push_back(Input(input));
   }
   PendingTable out(file, "");
   out.stream() << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';

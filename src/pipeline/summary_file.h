@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "pipeline/mesh_correction.h"
-#include "pipeline/stage_clock.h"
+#include "pipeline/run_tally.h"
 #include "softforce/pipeline/run.h"
 #include "softforce/vision/rig_pose.h"
 
@@ -13,14 +13,11 @@ namespace softforce::pipeline {
 struct RunFacts {
   const scene::Scene& scene;
   const RunOptions& options;
-  const RunReport& report;
+  const RunTally& tally;
   const World& world;
   const std::optional<MeshCorrection>& correction;
   std::optional<vision::RigPose> registration;
-  std::map<std::string, int> frame_statuses, marker_statuses;
-  double index_w = NAN;              // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
-  std::vector<double> reduced_chi2;  // of each frame: whitened squared misfit per degree of freedom
-  std::vector<StageClock::Percentiles> stages;
+  double index_w = NAN;  // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
   std::vector<std::filesystem::path> inputs;
 };
 

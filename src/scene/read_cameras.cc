@@ -5,16 +5,19 @@
 namespace softforce::scene {
 namespace {
 
-// Whether a source has the looks of a URL, a device or a GStreamer pipeline.
+// Whether a source has the looks of a URL, a device (or its number) or a GStreamer pipeline.
 bool LooksLive(const std::string& source) {
   const auto has = [&](const char* part) { return source.find(part) != std::string::npos; };
-  return has("://") || source.rfind("/dev/", 0) == 0 || (has(" ") && has("!"));
+  const bool is_number = !source.empty() && source.find_first_not_of("0123456789") == source.npos;
+  return has("://") || source.rfind("/dev/", 0) == 0 || (has(" ") && has("!")) || is_number;
 }
 
 std::string ReadSource(const YamlValue& value, SceneFiles files) {
   std::error_code ignored;  // a pipeline may be too long for a file's name
   const bool is_file = std::filesystem::is_regular_file(value.Path(), ignored);
   if (!is_file && LooksLive(value.Text())) return value.Text();
+  // The folder of one camera in a recorded one.
+  if (std::filesystem::is_directory(value.Path(), ignored)) return value.Path().string();
   const bool needed = files == SceneFiles::kAll;
   return (needed ? value.ExistingFile() : value.Path()).string();
 }

@@ -46,8 +46,8 @@ VideoFile::VideoFile(std::filesystem::path file, const std::vector<std::filesyst
               "can be decoded up to the cut."
             : "Play it with ffplay to see what is wrong; MP4 (H.264), MKV and AVI work.");
   }
-  width_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
-  height_ = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
+  size_ = {static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
+           static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT))};
   frames_per_second_ = salvaged_ ? salvaged_->frames_per_second() : capture_.get(cv::CAP_PROP_FPS);
   announced_ = salvaged_ ? salvaged_->announced_frames() : AnnouncedBy(capture_);
 }

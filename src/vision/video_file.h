@@ -9,26 +9,27 @@
 #include <vector>
 
 #include "vision/mp4_salvage.h"
+#include "vision/picture_stream.h"
 
 namespace softforce::vision {
 
 // One video, decoded picture by picture to 8-bit grey.
-class VideoFile {
+class VideoFile : public PictureStream {
  public:
   // Throws InputError if the file is missing or no video. If it is an MP4 without its index, it is
   // salvaged with the help of one of the `siblings`, recorded beside it with the same settings.
   VideoFile(std::filesystem::path file, const std::vector<std::filesystem::path>& siblings);
 
-  const std::filesystem::path& file() const { return file_; }
-  int width() const { return width_; }
-  int height() const { return height_; }
-  int announced_frames() const { return announced_; }  // 0 if the file does not say
+  const std::filesystem::path& file() const override { return file_; }
+  cv::Size size() const override { return size_; }
+  int announced_frames() const override { return announced_; }
 
   // Nothing at the end, or where the file is damaged. Every picture delivered is the frame that it
   // counts as: pictures that the decoder still gives behind a gap are left out.
-  std::optional<cv::Mat> Next();
-  double time_s() const { return time_s_; }  // of the last picture
-  void Rewind();
+  std::optional<cv::Mat> Next() override;
+  double time_s() const override { return time_s_; }
+  double camera_time_s() const override { return time_s_; }
+  void Rewind() override;
 
  private:
   // A decoded picture and what its container says of its time; nothing where OpenCV does not know.
@@ -44,7 +45,8 @@ class VideoFile {
   std::filesystem::path file_;
   std::optional<SalvagedVideo> salvaged_;
   cv::VideoCapture capture_;
-  int width_ = 0, height_ = 0, announced_ = 0;
+  cv::Size size_;
+  int announced_ = 0;
   double frames_per_second_ = 0;
   std::deque<Decoded> waiting_;  // decoded, not yet delivered
   int decoded_ = 0, delivered_ = 0;

@@ -116,11 +116,11 @@ const Spoilt kCases[] = {
     {"PlacesUnknown",
      [](const Folder& f) { testing::Edit(f / "scene.yaml", "known: true", "known: false"); },
      {"scene.yaml", "known"}},
-    {"LiveSource",
+    {"OneLiveSource",
      [](const Folder& f) {
        testing::Edit(f / "scene.yaml", "left: left.mp4", "left: 'rtsp://camera/left'");
      },
-     {"scene.yaml", "left", "live"}},
+     {"left", "right", "live"}},
     {"FiducialsInWrongOrder",
      [](const Folder& f) {
        testing::Edit(f / "scene.yaml", "[-44 38 -40 mm, -24 38 -40 mm",

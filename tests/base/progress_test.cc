@@ -39,5 +39,27 @@ TEST(Progress, CountsWithoutAnEndInSight) {
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1);
 }
 
+TEST(Progress, KeepsControlCharactersOutOfALog) {
+  const std::string log = Log(25, 30);
+
+  EXPECT_EQ(log.find('\r'), std::string::npos);
+  EXPECT_EQ(log.find('\033'), std::string::npos);
+}
+
+TEST(ProgressLine, ShowsABarTheRateAndTheTimeLeft) {
+  EXPECT_EQ(ProgressLine("frames", 30, 120, 15, 8),
+            "frames [==      ]: 30 of 120 (25 %), 15.0 per second, 6 s left");
+  EXPECT_EQ(ProgressLine("frames", 120, 120, 15, 8),
+            "frames [========]: 120 of 120 (100 %), 15.0 per second");
+  EXPECT_EQ(ProgressLine("frames", 60, 60'000, 10, 0),
+            "frames: 60 of 60000 (0 %), 10.0 per second, 100 min left");
+}
+
+TEST(ProgressLine, TellsTheRestOfALiveSource) {
+  EXPECT_EQ(ProgressLine("frames", 30, 0, 29.97, 8, "2 dropped"),
+            "frames: 30, 30.0 per second, 2 dropped");
+  EXPECT_EQ(ProgressLine("frames", 0, 0, 0, 8), "frames: 0");
+}
+
 }  // namespace
 }  // namespace softforce::base

@@ -87,6 +87,18 @@ TEST(ResultTables, SayWhyAFrameIsNotUsable) {
   EXPECT_FALSE(std::filesystem::exists(folder / "actuation.csv"));
 }
 
+// A program that is killed commits nothing, but what it had found must be on the disk.
+TEST(ResultTables, HaveEveryRowInThePartialFilesAtOnce) {
+  const std::filesystem::path folder = FreshFolder("result_tables_flushed");
+  ResultTables tables(folder, {true, false});
+  tables.Add(GoodFrame());
+
+  for (const char* name : {"forces.partial.csv", "markers.partial.csv", "actuation.partial.csv"}) {
+    const std::string text = ReadText(folder / name);
+    EXPECT_NE(text.find("\n3,0.100000,"), std::string::npos) << name << ": " << text;
+  }
+}
+
 TEST(ResultTables, LeaveNothingUnlessCommitted) {
   const std::filesystem::path folder = FreshFolder("result_tables_abandoned");
   {

@@ -20,5 +20,18 @@ TEST(StageClock, ReportsStagesInTheOrderOfFirstUse) {
   EXPECT_LE(report[0].median_ms, report[0].max_ms);
 }
 
+TEST(StageClock, TellsHowManyFramesWaited) {
+  StageClock clock;
+  for (const int waiting : {0, 3, 0, 1}) clock.BookQueue("estimate", waiting);
+  clock.Measure("decode", [] {});
+
+  const auto report = clock.Report();
+
+  EXPECT_TRUE(report[0].queued);
+  EXPECT_EQ(report[0].queue_max, 3);
+  EXPECT_DOUBLE_EQ(report[0].queue_mean, 1);
+  EXPECT_FALSE(report[1].queued);
+}
+
 }  // namespace
 }  // namespace softforce::pipeline

@@ -28,9 +28,14 @@ TEST(CameraSection, MakesPathsAbsolute) {
 
 TEST(CameraSection, KeepsSourcesThatAreNoFiles) {
   for (const std::string source :
-       {"rtsp://cell/left", "/dev/video0", "v4l2src ! videoconvert ! appsink"}) {
+       {"rtsp://cell/left", "/dev/video0", "0", "v4l2src ! videoconvert ! appsink"}) {
     EXPECT_EQ(LeftSource(source), source);
   }
+}
+
+TEST(CameraSection, TakesTheFolderOfARecordedCamera) {
+  std::filesystem::create_directories(TempFolder() / "recording/left");
+  EXPECT_EQ(LeftSource("recording/left"), TempFolder() / "recording/left");
 }
 
 TEST(CameraSection, ReadsFiducials) {

@@ -107,7 +107,7 @@ TEST_F(RecordingRefusal, TakesNoEmptyFileAndNoFolder) {
   std::ofstream{empty};
   EXPECT_THAT(Refusal(RigOf(kSize), {{"left", good_}, {"right", empty}}), HasSubstr("empty.mp4"));
   EXPECT_THAT(Refusal(RigOf(kSize), {{"left", good_}, {"right", folder_}}),
-              HasSubstr("no such video file"));
+              HasSubstr("is a folder without times.csv"));
 }
 
 TEST_F(RecordingRefusal, NamesBothResolutions) {

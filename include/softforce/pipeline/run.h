@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "softforce/pipeline/stage_times.h"
 #include "softforce/pipeline/tracker.h"
+#include "softforce/vision/live_cameras.h"
+#include "softforce/vision/recorder.h"
 
 namespace softforce::pipeline {
 
@@ -16,9 +19,16 @@ namespace softforce::pipeline {
 // shows, or the limit that is estimated from it.
 enum class MeshAim { kGiven, kRefined, kConverged };
 
+inline constexpr int kMaxThreads = 256;
+
 struct RunOptions {
-  std::filesystem::path out = "out";           // folder for the results; made if it is not there
-  std::map<std::string, std::string> sources;  // camera → file; instead of those in the scene
+  std::filesystem::path out = "out";  // folder for the results; made if it is not there
+  // Camera → file or live source; instead of those in the scene.
+  std::map<std::string, std::string> sources;
+  vision::LiveOptions live;
+  std::map<std::string, double> time_offsets_s;  // camera → by how much its time stamps are late
+  std::filesystem::path record;  // folder for the frames that are processed; empty: none
+  double duration_s = std::numeric_limits<double>::infinity();  // of the frames' times
   int first_frame = 0;
   int end_frame = std::numeric_limits<int>::max();  // one past the last
   int registration_frames =
@@ -27,10 +37,11 @@ struct RunOptions {
   bool vtu = false;     // write a ParaView series
   bool show_progress = true;
   int overlay_width = 1920;  // px, of all cameras side by side
+  int threads = 0;           // that the stages share; 0: as many as the machine has cores
   MeshAim mesh_aim = MeshAim::kGiven;
   TrackerOptions tracker;  // model errors: for the given mesh; less of them is left if corrected
-  const std::atomic<bool>* stop =
-      nullptr;  // set from outside: end after this frame, with complete files
+  // Set from outside: end after the frames in work, with complete files.
+  const std::atomic<bool>* stop = nullptr;
 
   void Check() const;  // throws InputError naming the option
 };
@@ -42,20 +53,24 @@ struct RunReport {
   std::vector<std::string> warnings;
   std::optional<FrameResult> last;  // frame with forces
   double seconds = 0;
+  std::vector<StageTimes> stages;
+  vision::SourceReport source;                     // how the cameras fared
+  std::optional<vision::RecorderReport> recorded;  // if a recording was made
+  bool live = false;
   std::filesystem::path out;
 
   // Whether the results can be relied on: the recording was whole and most frames gave forces.
   bool usable = false;
 
   std::string BriefReport() const;  // one line
-  std::string FullReport() const;   // with a table of the last frame's forces
+  std::string FullReport() const;   // with tables of the last frame's forces and of the stages
 };
 
-// The main job: scene.yaml in, forces out. Reads the recording that the scene names, finds where
-// the rig stands, estimates the forces in every frame, and writes forces.csv, markers.csv,
-// actuation.csv, summary.json and overlay.mp4. Files show up under their names only when they are
-// complete. Throws InputError for input that cannot be used, before anything is written where
-// possible.
+// The main job: scene.yaml in, forces out. Reads the recording that the scene names, or its live
+// cameras, finds where the rig stands, estimates the forces in every frame, and writes forces.csv,
+// markers.csv, actuation.csv, summary.json and overlay.mp4. Files show up under their names only
+// when they are complete. Stages run beside each other on threads; the tables do not depend on how
+// many. Throws InputError for input that cannot be used, before anything is written where possible.
 RunReport Run(const std::filesystem::path& scene_file, const RunOptions& options = {});
 
 }  // namespace softforce::pipeline

@@ -2,29 +2,22 @@
 
 #include <filesystem>
 #include <memory>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "softforce/camera/rig.h"
+#include "softforce/vision/frame_source.h"
 
 namespace softforce::vision {
 
-// The pictures that all cameras of a rig took at one moment.
-struct FrameSet {
-  int frame = -1;                 // counted from 0 at the start of the recording
-  double time_s = NAN;            // from the first camera's container, 0 at the start
-  std::vector<cv::Mat> pictures;  // one per camera in the rig's order, 8-bit grey, CV_8UC1
-};
-
-// Video files of all cameras of a rig, decoded side by side. Frame k of one file belongs to frame k
-// of every other.
-class Recording {
+// Video files of all cameras of a rig, or what a Recorder wrote of them, decoded side by side.
+// Frame k of one belongs to frame k of every other.
+class Recording : public FrameSource {
  public:
   struct Source {
-    std::string camera;  // a camera's name in the rig
-    std::filesystem::path file;
+    std::string camera;          // a camera's name in the rig
+    std::filesystem::path file;  // a video, or the folder of a camera in a recorded one
   };
 
   // Opens one source per camera of the rig. Throws InputError if a camera has no source or a source
@@ -34,20 +27,25 @@ class Recording {
   // An MP4 file that was cut off before its index ("moov") was written is salvaged where possible:
   // see mp4_salvage.h. It then counts as truncated.
   Recording(const camera::Rig& rig, const std::vector<Source>& sources);
-  ~Recording();
+  ~Recording() override;
   Recording(Recording&&) noexcept;
 
   // Frames that the files announce; a truncated file delivers fewer. 0 if none says, as a Matroska
   // file that was never closed.
-  int announced_frames() const;
+  int announced_frames() const override;
 
   // The next frame of all cameras, or nothing at the end of the shortest file. Where a file was cut
   // off, pictures that cannot be told from their successors are not delivered: with H.264's usual
   // order these are the last few.
-  std::optional<FrameSet> Next();
+  std::optional<FrameSet> Next() override;
 
   // Starts again at frame 0.
   void Rewind();
+
+  bool live() const override { return false; }
+  void Stop() override;
+  SourceReport Report() const override;
+  std::vector<std::string> TakeMessages() override;
 
   // After the end: which file ended early and where, in words for a person; empty if all are
   // complete.

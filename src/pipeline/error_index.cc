@@ -1,0 +1,21 @@
+#include "pipeline/error_index.h"
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace softforce::pipeline {
+
+double IndexW(const World& world) {
+  estimation::ForceEstimator estimator(world.solver.get(), world.sites);
+  if (!estimator.Advance(fem::NoActuation(world.solver->body())).ok()) return NAN;
+  Eigen::MatrixXd W(3 * world.markers.size(), estimator.num_components());
+  for (size_t m = 0; m < world.markers.size(); ++m) {
+    W.middleRows<3>(3 * static_cast<Eigen::Index>(m)) =
+        estimator.Compliance(world.markers[m].weights);
+  }
+  if (W.rows() < W.cols()) return NAN;
+  const Eigen::MatrixXd inverse = W.completeOrthogonalDecomposition().pseudoInverse();
+  return inverse.cwiseAbs().colwise().sum().maxCoeff();
+}
+
+}  // namespace softforce::pipeline

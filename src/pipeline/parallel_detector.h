@@ -1,0 +1,22 @@
+#pragma once
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+
+#include "pipeline/registration.h"
+
+namespace softforce::pipeline {
+
+// Detects the markers in all pictures of a frame at once, and in several frames at once: AprilTag's
+// detectors keep notes while they work, so every thread has its own.
+class ParallelDetector {
+ public:
+  // The scene must outlive it.
+  explicit ParallelDetector(const scene::Scene& scene);
+
+  std::vector<CameraDetections> Markers(const vision::FrameSet& set);
+
+ private:
+  tbb::enumerable_thread_specific<Detector> detectors_;
+};
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,49 @@
+#include "pipeline/run_outputs.h"
+
+namespace softforce::pipeline {
+namespace {
+
+ActuatorKinds KindsOf(const World& world) {
+  const fem::Body& body = world.solver->body();
+  return {!body.cables.empty(), !body.chambers.empty()};
+}
+
+}  // namespace
+
+RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, const World& world,
+                       const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot)
+    : world_(world), tables_(options.out, KindsOf(world)) {
+  if (options.overlay) {
+    overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, T_rig_robot,
+                     options.overlay_width);
+  }
+  if (options.vtu) series_.emplace(options.out);
+}
+
+std::vector<Stage> RunOutputs::Stages() {
+  using Order = Stage::Order;
+  std::vector<Stage> stages;
+  stages.push_back(
+      {"write", Order::kInOrder, [this](FrameInWork* frame) { tables_.Add(frame->result); }});
+  if (overlay_) {
+    stages.push_back({"draw", Order::kAny, [this](FrameInWork* frame) {
+                        frame->overlay = overlay_->Draw(frame->set, frame->result, frame->u);
+                      }});
+    stages.push_back({"overlay", Order::kInOrder,
+                      [this](FrameInWork* frame) { overlay_->Add(frame->overlay); }});
+  }
+  if (series_) {
+    stages.push_back({"vtu", Order::kInOrder, [this](FrameInWork* frame) {
+                        series_->Add(frame->set.frame, frame->set.time_s, world_.mesh(), frame->u);
+                      }});
+  }
+  return stages;
+}
+
+void RunOutputs::Commit() {
+  tables_.Commit();
+  if (overlay_) overlay_->Commit();
+  if (series_) series_->Commit();
+}
+
+}  // namespace softforce::pipeline

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/frame_pipeline.h"
+#include "pipeline/overlay_video.h"
+#include "pipeline/result_tables.h"
+#include "pipeline/vtu_series.h"
+#include "softforce/pipeline/run.h"
+
+namespace softforce::pipeline {
+
+// The files that a run writes frame by frame. They show up under their names with Commit().
+class RunOutputs {
+ public:
+  // Scene, world and rig must outlive it. Throws InputError if a file cannot be written.
+  RunOutputs(const RunOptions& options, const scene::Scene& scene, const World& world,
+             const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot);
+
+  // The steps that write a frame; this must outlive them.
+  std::vector<Stage> Stages();
+
+  void Commit();
+
+ private:
+  const World& world_;
+  ResultTables tables_;
+  std::optional<OverlayVideo> overlay_;
+  std::optional<VtuSeries> series_;
+};
+
+}  // namespace softforce::pipeline
