@@ -37,9 +37,8 @@ class Camera:
         self.port = free_port()
         self.command = (
             f"exec '{BUILD}/tests/vision/paint_frames' {width} {height} {RATE} | "
-            "exec ffmpeg -nostdin -loglevel error -use_wallclock_as_timestamps 1 "
-            f"-f rawvideo -pixel_format gray -video_size {width}x{height} -framerate {RATE} -i - "
-            f"-threads 1 -flush_packets 1 -c:v mjpeg -q:v 3 {TRANSPORTS[transport]} "
+            "exec ffmpeg -nostdin -loglevel error -probesize 32 -analyzeduration 0 -f nut -i - "
+            f"-fps_mode passthrough -threads 1 -flush_packets 1 -c:v mjpeg -q:v 3 {TRANSPORTS[transport]} "
             f"'tcp://127.0.0.1:{self.port}?listen=1' 2>/dev/null")
         self.process = None
 
@@ -67,6 +66,10 @@ def start_recorder(cameras, folder, *options):
     for camera in cameras:
         command += ["--camera", camera.source]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+
+
+def start_feeder(folder, width, height):
+    return subprocess.Popen([BUILD / "benchmarks" / "feed_recorder", folder, str(width), str(height), str(RATE)])
 
 
 def check(folder, width, height):

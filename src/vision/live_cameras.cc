@@ -127,10 +127,10 @@ void LiveCameras::State::WatchSilence(double now_s) {
     counts += fmt::format(" {}: {} unpaired, {} of uncertain time.", channel.camera.name,
                           channel.report.unpaired, channel.report.unsure);
   }
-  messages.push_back(
-      fmt::format("all cameras deliver, but no pictures belong together within {:.1f} ms.{} Do "
-                  "they run at the same rate, and is their time offset set?",
-                  1e3 * pairer->tolerance_s(), counts));
+  messages.push_back(fmt::format(
+      "all cameras deliver, but no pictures belong together.{} Is the computer busy, do "
+      "they run at the same rate, and is their time offset set?",
+      counts));
   silence_told = true;
 }
 
@@ -148,6 +148,7 @@ std::string LiveCameras::State::Take(Channel* channel, CameraStream::Grabbed gra
                                      grabbed.arrival_s - channel->lost_s));
       ++report.reopened;
       channel->lost_s = NAN;
+      last_set_s = grabbed.arrival_s;  // its clock has to settle first
     }
   }
   channel->started = true;

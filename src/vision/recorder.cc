@@ -15,6 +15,7 @@
 
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
+#include "vision/disk_sync.h"
 #include "vision/recorded_folder.h"
 #include "vision/segment_writer.h"
 
@@ -69,6 +70,7 @@ struct Recorder::State {
   std::vector<CameraFiles> cameras;
   int segment = -1;
   double first_s = 0, segment_start_s = 0;
+  DiskSync sync;
 
   mutable std::mutex mutex;  // of all below
   std::condition_variable more, room;
@@ -123,8 +125,9 @@ void Recorder::State::EndSegment() {
     if (!camera.segment) continue;
     camera.segment->Finish();
     camera.segment.reset();
-    SyncToDisk(camera.folder / kTimesFile);
-    SyncToDisk(camera.folder);
+    sync.Add(SegmentFile(camera.folder, segment));
+    sync.Add(camera.folder / kTimesFile);
+    sync.Add(camera.folder);
   }
 }
 
@@ -198,6 +201,7 @@ void Recorder::State::Join() {
 void Recorder::State::Complete() {
   if (error) std::rethrow_exception(error);
   EndSegment();
+  sync.Finish();
   WriteManifest(true);
 }
 

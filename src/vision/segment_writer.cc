@@ -112,7 +112,6 @@ void SegmentWriter::Finish() {
   s.Store();
   s.Require(av_write_trailer(s.container.get()) >= 0, "its index cannot be stored");
   s.Require(avio_closep(&s.container->pb) >= 0, "it cannot be closed");
-  SyncToDisk(s.file);
 }
 
 void SyncToDisk(const std::filesystem::path& path) {

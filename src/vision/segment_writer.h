@@ -19,7 +19,7 @@ class SegmentWriter {
   // written. Returns the bytes.
   int64_t Add(const cv::Mat& picture, double time_s);
 
-  // Completes the file and syncs it to the disk.
+  // Completes the file, but does not wait for the disk.
   void Finish();
 
  private:

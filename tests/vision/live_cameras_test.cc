@@ -42,17 +42,17 @@ std::string At(std::string text, int port) {
   return text.replace(text.find("PORT"), 4, std::to_string(port));
 }
 
-const Transport kMotionJpegOverTcp{"MotionJpegOverTcp",
-                                   "-c:v mjpeg -q:v 3 -f mjpeg tcp://127.0.0.1:PORT?listen=1",
-                                   "tcp://127.0.0.1:PORT"};
-const Transport kTransports[] = {
-    kMotionJpegOverTcp,
-    {"MultipartJpegOverHttp", "-c:v mjpeg -q:v 3 -f mpjpeg -listen 1 http://127.0.0.1:PORT/video",
-     "http://127.0.0.1:PORT/video"},
-    {"MatroskaOverTcp",
-     "-c:v mjpeg -q:v 3 -f matroska -live 1 -cluster_time_limit 1 "
-     "tcp://127.0.0.1:PORT?listen=1",
-     "tcp://127.0.0.1:PORT"}};
+const Transport kMotionJpeg{"MotionJpegOverTcp",
+                            "-c:v mjpeg -q:v 3 -f mjpeg tcp://127.0.0.1:PORT?listen=1",
+                            "tcp://127.0.0.1:PORT"};
+const Transport kMultipart{"MultipartJpegOverHttp",
+                           "-c:v mjpeg -q:v 3 -f mpjpeg -listen 1 http://127.0.0.1:PORT/video",
+                           "http://127.0.0.1:PORT/video"};
+// With time stamps, so that a busy computer cannot make the cameras' rhythm unknowable.
+const Transport kMatroska{"MatroskaOverTcp",
+                          "-c:v mjpeg -q:v 3 -f matroska -live 1 -cluster_time_limit 1 "
+                          "tcp://127.0.0.1:PORT?listen=1",
+                          "tcp://127.0.0.1:PORT"};
 
 // A rig of two cameras that are served.
 class Served {
@@ -119,49 +119,45 @@ class LiveOver : public ::testing::TestWithParam<Transport> {};
 TEST_P(LiveOver, PairsPicturesOfOneMoment) {
   Served served(GetParam());
   LiveCameras live(served.cameras());
-
-  double last_s = -1;
-  int last_frame = -1;
   std::vector<uint32_t> numbers;
   std::vector<double> times_s;
-  while (numbers.size() < 30) {
+  const auto start = steady_clock::now();
+  // A stream without time stamps may give few sets on a busy computer, but none that is wrong.
+  while (numbers.size() < 30 && (numbers.empty() || steady_clock::now() - start < seconds(10))) {
     const auto set = live.Next();
     ASSERT_TRUE(set);
     numbers.push_back(ExpectOneNumber(*set));
     times_s.push_back(set->time_s);
-    EXPECT_EQ(set->frame, last_frame + 1);
-    EXPECT_GT(set->time_s, last_s);
-    last_frame = set->frame;
-    last_s = set->time_s;
+    EXPECT_EQ(set->frame, static_cast<int>(numbers.size()) - 1);
+    EXPECT_EQ(set->camera_time_s.size(), 2u);
   }
+
+  EXPECT_EQ(times_s[0], 0);
   // Time stamps follow the pictures' numbers to half a period, whatever was left out.
   for (size_t k = 0; k < numbers.size(); ++k) {
     EXPECT_NEAR(times_s[k], (numbers[k] - numbers[0]) / kRate, 0.5 / kRate) << k;  // s
   }
-  EXPECT_EQ(times_s[0], 0);
   const SourceReport report = live.Report();
-  EXPECT_GE(report.delivered, 30);
+  EXPECT_EQ(report.delivered, static_cast<int64_t>(numbers.size()));
   for (const CameraReport& camera : report.cameras) {
     EXPECT_EQ(camera.state, CameraReport::State::kRunning);
     EXPECT_GE(camera.received, camera.paired + camera.unpaired + camera.unsure);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Loopback, LiveOver, ::testing::ValuesIn(kTransports),
+INSTANTIATE_TEST_SUITE_P(Loopback, LiveOver, ::testing::Values(kMotionJpeg, kMultipart, kMatroska),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(LiveCameras, PairNothingWrongWhenPicturesComeLateOrNotAtAll) {
-  // Late by up to 60 % of the time between two pictures; one in fifty is left out.
-  Served served(kMotionJpegOverTcp, 20, 0.02);
-  LiveOptions options;
-  options.settle_s = 0.5;
-  LiveCameras live(served.cameras(), options);
+  // Late by up to 90 % of the time between two pictures; one in twenty is left out.
+  Served served(kMatroska, 30, 0.05);
+  LiveCameras live(served.cameras());
 
   FetchUntil(&live, [](int fetched) { return fetched >= 30; });
 }
 
 TEST(LiveCameras, OneThatIsKilledComesBackWhileTheOtherGoesOn) {
-  Served served(kMotionJpegOverTcp);
+  Served served(kMatroska);
   LiveOptions options;
   options.settle_s = 0.5;
   LiveCameras live(served.cameras(), options);
@@ -194,7 +190,7 @@ TEST(LiveCameras, OneThatIsKilledComesBackWhileTheOtherGoesOn) {
 }
 
 TEST(LiveCameras, OneThatStallsIsReportedAndTheProgramStopsAllTheSame) {
-  Served served(kMotionJpegOverTcp);
+  Served served(kMatroska);
   LiveOptions options;
   options.stall_s = 0.5;
   LiveCameras live(served.cameras(), options);
@@ -217,7 +213,7 @@ TEST(LiveCameras, OneThatStallsIsReportedAndTheProgramStopsAllTheSame) {
 }
 
 TEST(LiveCameras, DropTheOldestSetsThatNobodyFetches) {
-  Served served(kMotionJpegOverTcp);
+  Served served(kMatroska);
   LiveOptions options;
   options.settle_s = 0.5;
   options.queue = 2;
@@ -237,7 +233,7 @@ TEST(LiveCameras, DropTheOldestSetsThatNobodyFetches) {
 }
 
 TEST(LiveCameras, AreRecordedAndPlayedBackToTheLastBit) {
-  Served served(kMotionJpegOverTcp);
+  Served served(kMatroska);
   const std::filesystem::path folder = TempFolder() / "recorded";
   std::vector<FrameSet> sets;
   {

@@ -28,10 +28,9 @@ CameraServer::CameraServer(int width, int height, double rate_hz, const std::str
   std::ostringstream command;
   command << "'" << SOFTFORCE_PAINT_FRAMES << "' " << width << " " << height << " " << rate_hz
           << " " << jitter_ms << " " << drop_share
-          << " | ffmpeg -nostdin -loglevel error -use_wallclock_as_timestamps 1 -f rawvideo "
-             "-pixel_format gray -video_size "
-          << width << "x" << height << " -framerate " << rate_hz
-          << " -i - -flush_packets 1 -threads 1 " << serve << " 2>/dev/null";
+          << " | ffmpeg -nostdin -loglevel error -probesize 32 -analyzeduration 0 -f nut -i - "
+             "-fps_mode passthrough -flush_packets 1 -threads 1 "
+          << serve << " 2>/dev/null";
   command_ = command.str();
   Start();
 }

@@ -238,6 +238,7 @@ pid_t StartRecorder(const fs::path& folder, int tell) {
   if (child != 0) return child;
   RecorderOptions options;
   options.segment_s = 0.1;
+  options.wait = true;  // set k is the k-th in the files
   Recorder recorder(folder, kCameras, options);
   for (int k = 0;; ++k) {
     recorder.Add(SetOf(k));
