@@ -1,6 +1,6 @@
 # Every outside library, found once. All come from Debian 12 packages; scripts/lib/packages lists them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d aruco)
 set(flags_before_visp "${CMAKE_CXX_FLAGS}")
 find_package(VISP 3.5 REQUIRED COMPONENTS visp_core visp_vision visp_visual_features)
 set(CMAKE_CXX_FLAGS "${flags_before_visp}")  # ViSP adds -fopenmp to everything
@@ -19,7 +19,7 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(GSTREAMER REQUIRED IMPORTED_TARGET gstreamer-1.0>=1.22 gstreamer-app-1.0 gstreamer-video-1.0)
 
-# These ship no usable CMake package: SuiteSparse 5.12, OpenBLAS's own thread control, AprilTag, Gmsh, FFmpeg.
+# These ship no usable CMake package: SuiteSparse 5.12, OpenBLAS's own thread control, AprilTag, Gmsh, FFmpeg, Cairo.
 function(softforce_import name header library)
   find_path(${library}_INCLUDE_DIR ${header} REQUIRED ${ARGN})
   find_library(${library}_LIBRARY ${library} REQUIRED)
@@ -32,6 +32,7 @@ softforce_import(OpenBLAS::OpenBLAS cblas.h openblas PATH_SUFFIXES x86_64-linux-
 softforce_import(AprilTag::AprilTag apriltag.h apriltag PATH_SUFFIXES apriltag)
 find_library(apriltag-utils_LIBRARY apriltag-utils REQUIRED)
 target_link_libraries(AprilTag::AprilTag INTERFACE ${apriltag-utils_LIBRARY})
+softforce_import(Cairo::Cairo cairo.h cairo PATH_SUFFIXES cairo)
 softforce_import(Gmsh::Gmsh gmsh.h gmsh)
 softforce_import(FFmpeg::FFmpeg libavcodec/avcodec.h avcodec)  # its headers come with libopencv-dev
 foreach(library avformat avutil swscale)

@@ -17,6 +17,7 @@ Command AddMesh(CLI::App* program);
 Command AddRecord(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);
+Command AddTarget(CLI::App* program);
 Command AddValidate(CLI::App* program);
 
 }  // namespace softforce::apps

@@ -9,10 +9,10 @@
 
 namespace softforce::vision {
 
-TagCells DrawTag(const std::string& family, int id, const std::string& where) {
+TagCells DrawTag(const std::string& family, int id, const std::string& where, int black_border) {
   const FamilyMaker& maker = MakerOf(family, where);
-  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> made(maker.create(),
-                                                                              maker.destroy);
+  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> made(
+      CreateFamily(maker, black_border), maker.destroy);
   if (id < 0 || id >= static_cast<int>(made->ncodes)) {
     throw base::InputError(
         where, fmt::format("{} has no tag {}, its ids are 0 to {}", family, id, made->ncodes - 1));

@@ -32,4 +32,16 @@ const FamilyMaker& MakerOf(const std::string& family, const std::string& where) 
                          fmt::format("\"{}\" is not known; expected one of {}", family, known));
 }
 
+apriltag_family_t* CreateFamily(const FamilyMaker& maker, int black_border) {
+  apriltag_family_t* family = maker.create();
+  const int extra = black_border - 1;
+  family->width_at_border += 2 * extra;
+  family->total_width += 2 * extra;
+  for (uint32_t i = 0; i < family->nbits; ++i) {  // counted from the border's outer corner
+    family->bit_x[i] += extra;
+    family->bit_y[i] += extra;
+  }
+  return family;
+}
+
 }  // namespace softforce::vision

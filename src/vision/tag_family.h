@@ -19,4 +19,8 @@ struct FamilyMaker {
 // Throws InputError, naming `where`, for an unknown family.
 const FamilyMaker& MakerOf(const std::string& family, const std::string& where = "tag family");
 
+// The family with so many cells of black around its codes, where AprilTag has one. To be destroyed
+// by `maker`.
+apriltag_family_t* CreateFamily(const FamilyMaker& maker, int black_border);
+
 }  // namespace softforce::vision

@@ -25,6 +25,7 @@ void TagOptions::Check() const {
   require(max_corrected_bits >= 0 && max_corrected_bits <= 3, "max_corrected_bits",
           "must lie between 0 and 3");
   require(min_decision_margin >= 0, "min_decision_margin", "must be 0 or more");
+  require(black_border == 1 || black_border == 2, "black_border", "must be 1 or 2 cells");
   require(border >= 0, "border", "must be 0 px or more");
 }
 
@@ -37,7 +38,7 @@ struct TagDetector::State {
   State(const std::string& name, const TagOptions& options_in)
       : maker(MakerOf(name)), options(options_in) {
     options.Check();
-    family = maker.create();
+    family = CreateFamily(maker, options.black_border);
     detector = apriltag_detector_create();
     apriltag_detector_add_family_bits(detector, family, options.max_corrected_bits);
     detector->quad_decimate = static_cast<float>(options.decimate);

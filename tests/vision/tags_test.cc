@@ -179,6 +179,8 @@ TEST(TagOptions, RefusesValuesOutOfRange) {
   refuses([](TagOptions& o) { o.max_corrected_bits = -1; });
   refuses([](TagOptions& o) { o.max_corrected_bits = 4; });
   refuses([](TagOptions& o) { o.min_decision_margin = -1; });
+  refuses([](TagOptions& o) { o.black_border = 0; });
+  refuses([](TagOptions& o) { o.black_border = 3; });
   refuses([](TagOptions& o) { o.border = -1; });
 }
 

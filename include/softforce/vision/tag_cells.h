@@ -12,7 +12,9 @@ struct TagCells {
 };
 
 // As libapriltag draws it, its own white rim included. Throws InputError, naming `where`, for a
-// family that TagDetector does not know, or an id that the family does not have.
-TagCells DrawTag(const std::string& family, int id, const std::string& where = "tag");
+// family that TagDetector does not know, or an id that the family does not have. `black_border`:
+// see TagOptions.
+TagCells DrawTag(const std::string& family, int id, const std::string& where = "tag",
+                 int black_border = 1);
 
 }  // namespace softforce::vision

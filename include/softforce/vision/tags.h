@@ -26,7 +26,8 @@ struct TagOptions {
   double decimate = 2;         // AprilTag looks for squares in a picture this many times smaller
   int max_corrected_bits = 1;  // Hamming distance still accepted
   double min_decision_margin = 20;
-  double border = 3;  // px; tags closer to the picture's edge are refused, being clipped
+  int black_border = 1;  // cells of black around the code; AprilTag's own have 1, Kalibr's grids 2
+  double border = 3;     // px; tags closer to the picture's edge are refused, being clipped
 
   void Check() const;  // throws InputError naming the option
 };
