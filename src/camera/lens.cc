@@ -4,81 +4,55 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "camera/lens_models.h"
+
 namespace softforce::camera {
-namespace {
 
-struct Distorted {
-  Eigen::Vector2d point;
-  Eigen::Matrix2d jacobian;  // d point / d undistorted
-};
+int NumDistortion(LensModel model) { return model == LensModel::kKannalaBrandt ? 4 : 8; }
 
-// OpenCV's rational model: radial factor (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶),
-// plus the tangential terms p1, p2.
-Distorted Distort(const BrownConrady& lens, const Eigen::Vector2d& n) {
-  const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = lens.distortion;
-  const double x = n.x();
-  const double y = n.y();
-  const double r2 = n.squaredNorm();
-  const double numerator = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double denominator = 1 + r2 * (k4 + r2 * (k5 + r2 * k6));
-  const double radial = numerator / denominator;
-  const double d_numerator = k1 + r2 * (2 * k2 + r2 * 3 * k3);  // d/d(r²)
-  const double d_denominator = k4 + r2 * (2 * k5 + r2 * 3 * k6);
-  const double d_radial = (d_numerator - radial * d_denominator) / denominator;
-
-  Distorted d;
-  d.point << x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-      y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
-  d.jacobian << radial + 2 * x * x * d_radial + 2 * p1 * y + 6 * p2 * x,
-      2 * x * y * d_radial + 2 * p1 * x + 2 * p2 * y,
-      2 * x * y * d_radial + 2 * p1 * x + 2 * p2 * y,
-      radial + 2 * y * y * d_radial + 6 * p1 * y + 2 * p2 * x;
-  return d;
-}
-
-// Beyond the radius where the distorted radius stops growing the polynomial folds back, and a point
-// far outside the field would be drawn inside the picture.
-bool WithinField(const Distorted& d) {
-  return d.jacobian.determinant() > 0 && d.jacobian.trace() > 0;
-}
-
-}  // namespace
-
-Projection Project(const BrownConrady& lens, const Eigen::Vector3d& p_camera) {
+Projection Project(const Lens& lens, const Eigen::Vector3d& p_camera) {
+  const Distorted d = lens.model == LensModel::kKannalaBrandt
+                          ? kannala_brandt::Distort(lens, p_camera)
+                          : brown_conrady::Distort(lens, p_camera);
   Projection projection;
-  const double z = p_camera.z();
-  if (!(z > 0)) return projection;
-  const Eigen::Vector2d n = p_camera.head<2>() / z;
-  const Distorted d = Distort(lens, n);
-  if (!WithinField(d) || !d.point.allFinite()) return projection;
-
+  if (!d.within_field) return projection;
   const Eigen::Vector2d f(lens.fx, lens.fy);
-  Eigen::Matrix<double, 2, 3> d_n;  // of the normalised coordinates by p_camera
-  d_n << 1 / z, 0, -n.x() / z, 0, 1 / z, -n.y() / z;
   projection.pixel = f.cwiseProduct(d.point) + Eigen::Vector2d(lens.cx, lens.cy);
-  projection.jacobian = f.asDiagonal() * d.jacobian * d_n;
+  projection.jacobian = f.asDiagonal() * d.jacobian;
   projection.visible = true;
   return projection;
 }
 
-std::optional<Eigen::Vector2d> Unproject(const BrownConrady& lens, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector2d goal((pixel.x() - lens.cx) / lens.fx, (pixel.y() - lens.cy) / lens.fy);
-  Eigen::Vector2d n = goal;
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    const Distorted d = Distort(lens, n);
-    const Eigen::Vector2d misfit = goal - d.point;
-    if (misfit.norm() < 1e-14 * (1 + goal.norm())) break;
-    const Eigen::Vector2d step = d.jacobian.inverse() * misfit;
-    if (!step.allFinite()) return std::nullopt;
-    n += step;
-    if (step.norm() < 1e-15 * (1 + n.norm())) break;
-  }
-  const Distorted d = Distort(lens, n);
-  const bool found = (d.point - goal).norm() < 1e-9 && WithinField(d);
-  return found ? std::optional<Eigen::Vector2d>(n) : std::nullopt;
+LensJacobian ProjectionByLens(const Lens& lens, const Eigen::Vector3d& p_camera) {
+  const bool fisheye = lens.model == LensModel::kKannalaBrandt;
+  const Distorted d =
+      fisheye ? kannala_brandt::Distort(lens, p_camera) : brown_conrady::Distort(lens, p_camera);
+  const Eigen::Vector2d f(lens.fx, lens.fy);
+  LensJacobian jacobian;
+  jacobian.leftCols<2>() = d.point.asDiagonal();
+  jacobian.middleCols<2>(2).setIdentity();
+  jacobian.rightCols<8>() =
+      f.asDiagonal() * (fisheye ? kannala_brandt::ByDistortion(lens, p_camera)
+                                : brown_conrady::ByDistortion(lens, p_camera));
+  return jacobian;
 }
 
-std::optional<Eigen::Vector2d> ProjectDiscCentroid(const BrownConrady& lens,
+std::optional<Eigen::Vector3d> UnprojectRay(const Lens& lens, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d point((pixel.x() - lens.cx) / lens.fx, (pixel.y() - lens.cy) / lens.fy);
+  const std::optional<Eigen::Vector3d> direction = lens.model == LensModel::kKannalaBrandt
+                                                       ? kannala_brandt::Undistort(lens, point)
+                                                       : brown_conrady::Undistort(lens, point);
+  if (!direction) return std::nullopt;
+  return direction->normalized();
+}
+
+std::optional<Eigen::Vector2d> Unproject(const Lens& lens, const Eigen::Vector2d& pixel) {
+  const std::optional<Eigen::Vector3d> ray = UnprojectRay(lens, pixel);
+  if (!ray || !(ray->z() > 0)) return std::nullopt;
+  return ray->hnormalized();
+}
+
+std::optional<Eigen::Vector2d> ProjectDiscCentroid(const Lens& lens,
                                                    const Eigen::Vector3d& centre_camera,
                                                    const Eigen::Vector3d& normal_camera,
                                                    double diameter) {

@@ -19,11 +19,10 @@ std::vector<Ray> Rays(const Rig& rig, const std::vector<PixelObservation>& pixel
   std::vector<Ray> rays;
   for (const PixelObservation& seen : pixels) {
     const Camera& camera = rig.cameras[seen.camera];
-    const std::optional<Eigen::Vector2d> n = Unproject(camera.lens, seen.pixel);
-    if (!n) continue;
+    const std::optional<Eigen::Vector3d> ray = UnprojectRay(camera.lens, seen.pixel);
+    if (!ray) continue;
     const Eigen::Isometry3d T_rig_camera = camera.T_camera_rig.inverse();
-    rays.push_back(
-        {T_rig_camera.translation(), (T_rig_camera.linear() * n->homogeneous()).normalized()});
+    rays.push_back({T_rig_camera.translation(), T_rig_camera.linear() * *ray});
   }
   return rays;
 }

@@ -13,15 +13,16 @@ Json CamerasOf(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot) {
   Json cameras;
   cameras["image_size"] = {rig.cameras[0].width, rig.cameras[0].height};
   cameras["model"] =
-      "OpenCV Brown-Conrady, D = k1 k2 p1 p2 k3 k4 k5 k6; integer pixel coordinates are pixel "
-      "centres";
+      "OpenCV Brown-Conrady, D = k1 k2 p1 p2 k3 k4 k5 k6, or OpenCV fisheye, D = k1 k2 k3 k4; "
+      "integer pixel coordinates are pixel centres";
   for (const camera::Camera& camera : rig.cameras) {
-    const camera::BrownConrady& lens = camera.lens;
+    const camera::Lens& lens = camera.lens;
     Eigen::Matrix3d K;
     K << lens.fx, 0, lens.cx, 0, lens.fy, lens.cy, 0, 0, 1;
     cameras[camera.name] = {
         {"K", Rows(K)},
-        {"D", lens.distortion},
+        {"D", std::vector<double>(lens.distortion.begin(),
+                                  lens.distortion.begin() + camera::NumDistortion(lens.model))},
         {"T_camera_robot", Rows(InMillimetres(camera.T_camera_rig * T_rig_robot))}};
   }
   cameras["T_camera_robot_convention"] =

@@ -39,9 +39,11 @@ Eigen::Isometry3d ReadTransform(const YamlValue& value) {
 
 namespace {
 
-camera::BrownConrady ReadLens(YamlMap& map) {
-  map.Required("model").Choice<bool>({{"brown_conrady", true}});  // the only one so far
-  camera::BrownConrady lens;
+camera::Lens ReadLens(YamlMap& map) {
+  camera::Lens lens;
+  lens.model = map.Required("model").Choice<camera::LensModel>(
+      {{"brown_conrady", camera::LensModel::kBrownConrady},
+       {"kannala_brandt", camera::LensModel::kKannalaBrandt}});
   const YamlValue intrinsics = map.Required("intrinsics", "They are [fx, fy, cx, cy] in px.");
   const std::vector<double> numbers = intrinsics.Numbers({4});
   lens.fx = numbers[0];
@@ -52,9 +54,11 @@ camera::BrownConrady ReadLens(YamlMap& map) {
     intrinsics.Fail(
         fmt::format("got the focal lengths {} and {}, expected more than 0 px", lens.fx, lens.fy));
   }
+  const bool fisheye = lens.model == camera::LensModel::kKannalaBrandt;
   const std::vector<double> distortion =
-      map.Required("distortion", "It is [k1, k2, p1, p2], then k3, then k4, k5, k6.")
-          .Numbers({4, 5, 8});
+      map.Required("distortion", fisheye ? "It is [k1, k2, k3, k4]."
+                                         : "It is [k1, k2, p1, p2], then k3, then k4, k5, k6.")
+          .Numbers(fisheye ? std::vector<int>{4} : std::vector<int>{4, 5, 8});
   std::copy(distortion.begin(), distortion.end(), lens.distortion.begin());
   return lens;
 }
@@ -95,13 +99,17 @@ std::string Rows(const Eigen::Isometry3d& T, const std::string& indent) {
 }
 
 std::string ToYaml(const camera::Camera& camera) {
-  const camera::BrownConrady& lens = camera.lens;
+  const camera::Lens& lens = camera.lens;
   const std::array<double, 4> intrinsics = {lens.fx, lens.fy, lens.cx, lens.cy};
   std::string yaml = "  " + YAML::Dump(YAML::Node(camera.name)) + ":\n";
-  yaml += "    model: brown_conrady\n";
+  const bool fisheye = lens.model == camera::LensModel::kKannalaBrandt;
+  const std::vector<double> distortion(lens.distortion.begin(),
+                                       lens.distortion.begin() + camera::NumDistortion(lens.model));
+  yaml += fmt::format("    model: {}\n", fisheye ? "kannala_brandt" : "brown_conrady");
   yaml += fmt::format("    resolution: [{}, {}]\n", camera.width, camera.height);
   yaml += "    intrinsics: " + List(intrinsics) + "  # fx, fy, cx, cy in px\n";
-  yaml += "    distortion: " + List(lens.distortion) + "  # k1, k2, p1, p2, k3, k4, k5, k6\n";
+  yaml += "    distortion: " + List(distortion) +
+          (fisheye ? "  # k1, k2, k3, k4\n" : "  # k1, k2, p1, p2, k3, k4, k5, k6\n");
   yaml += "    T_camera_rig:  # metres\n" + Rows(camera.T_camera_rig, "      ");
   return yaml;
 }

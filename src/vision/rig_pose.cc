@@ -45,7 +45,7 @@ std::vector<NormalisedSighting> Normalise(const camera::Rig& rig,
                                           const std::vector<PointSighting>& sightings) {
   std::vector<NormalisedSighting> normalised;
   for (const PointSighting& seen : sightings) {
-    const camera::BrownConrady& lens = rig.cameras[seen.camera].lens;
+    const camera::Lens& lens = rig.cameras[seen.camera].lens;
     if (!seen.pixel.allFinite() || !seen.covariance.allFinite()) continue;
     const auto point = camera::Unproject(lens, seen.pixel);
     if (!point) continue;

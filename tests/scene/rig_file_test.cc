@@ -64,6 +64,19 @@ TEST(SaveRig, WritesWhatLoadRigReadsBackToTheLastBit) {
   EXPECT_EQ(loaded.T_rig_robot->matrix(), rig.T_rig_robot->matrix());
 }
 
+TEST(SaveRig, WritesAFisheyeThatLoadRigReadsBack) {
+  camera::Rig rig = LoadText(kRigText);
+  rig.cameras[1].lens.model = camera::LensModel::kKannalaBrandt;
+  rig.cameras[1].lens.distortion = {0.1, -0.2, 1e-7, 1.0 / 3, 0, 0, 0, 0};
+
+  SaveRig(rig, TempFolder() / "saved.yaml");
+  const camera::Rig loaded = LoadRig(TempFolder() / "saved.yaml");
+
+  EXPECT_EQ(loaded.cameras[0].lens.model, camera::LensModel::kBrownConrady);
+  EXPECT_EQ(loaded.cameras[1].lens.model, camera::LensModel::kKannalaBrandt);
+  EXPECT_EQ(loaded.cameras[1].lens.distortion, rig.cameras[1].lens.distortion);
+}
+
 TEST(SaveRig, RefusesAFolderThatIsNotThere) {
   EXPECT_THROW(SaveRig({}, TempFolder() / "missing" / "rig.yaml"), base::InputError);
 }
@@ -95,9 +108,9 @@ TEST(LoadRig, RefusesAMatrixOfThreeRows) {
 }
 
 TEST(LoadRig, RefusesAnUnknownLensModel) {
-  EXPECT_THAT(
-      RigRefusal("left:\n    model: brown_conrady", "left:\n    model: fisheye"),
-      StartsWith("rig.yaml:4: cameras: left: model: got \"fisheye\", expected brown_conrady"));
+  EXPECT_THAT(RigRefusal("left:\n    model: brown_conrady", "left:\n    model: fisheye"),
+              StartsWith("rig.yaml:4: cameras: left: model: got \"fisheye\", expected "
+                         "brown_conrady, kannala_brandt"));
 }
 
 TEST(LoadRig, RefusesAFocalLengthThatIsNotPositive) {
@@ -115,6 +128,11 @@ TEST(LoadRig, RefusesAResolutionThatIsNotPositive) {
 TEST(LoadRig, RefusesADistortionOfAnotherLength) {
   EXPECT_EQ(RigRefusal("[0, 0, 0, 0]\n    T", "[0, 0]\n    T"),
             "rig.yaml:13: cameras: right: distortion: got 2 items, expected 4 or 5 or 8");
+}
+
+TEST(LoadRig, RefusesAFisheyeOfFiveParameters) {
+  EXPECT_THAT(RigRefusal("left:\n    model: brown_conrady", "left:\n    model: kannala_brandt"),
+              HasSubstr("distortion: got 5 items, expected 4"));
 }
 
 TEST(LoadRig, RefusesNumbersThatAreNone) {

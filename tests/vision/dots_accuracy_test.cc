@@ -20,7 +20,7 @@ constexpr double kBlur = 0.7;   // px
 constexpr double kNoise = 2;    // grey levels
 constexpr double kGround = 60;  // grey levels
 constexpr double kPaint = 190;  // grey levels
-const camera::BrownConrady kLens{1603.2, 1601.7, 119.3, 120.6, {-0.12, 0.08, 0.0006, -0.0004}};
+const camera::Lens kLens{1603.2, 1601.7, 119.3, 120.6, {-0.12, 0.08, 0.0006, -0.0004}};
 
 // A disc anywhere near the middle of the picture, slanted by up to 50° in any direction.
 struct Disc {

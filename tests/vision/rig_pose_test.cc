@@ -151,7 +151,7 @@ TEST(EstimateRigPose, NeverPutsThePointsBehindTheCamera) {
   // Seen through the camera's centre from behind, a picture is turned by half a turn: a pose in
   // front must explain that, or none.
   for (PointSighting& seen : sightings) {
-    const camera::BrownConrady& lens = rig.cameras[seen.camera].lens;
+    const camera::Lens& lens = rig.cameras[seen.camera].lens;
     seen.pixel = 2 * Eigen::Vector2d(lens.cx, lens.cy) - seen.pixel;
   }
   const RigPose pose = EstimateRigPose(rig, sightings);

@@ -100,7 +100,7 @@ void PaintBox(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double le
   });
 }
 
-void PaintDisc(const camera::BrownConrady& lens, const Eigen::Vector3d& centre,
+void PaintDisc(const camera::Lens& lens, const Eigen::Vector3d& centre,
                const Eigen::Vector3d& normal, double diameter, double level,
                SyntheticScene* scene) {
   const double reach = 0.6 * lens.fx * diameter / centre.z() + 4;  // px

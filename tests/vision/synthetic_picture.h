@@ -46,7 +46,7 @@ void PaintBox(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double le
               SyntheticScene* scene);
 
 // A flat disc seen through a lens. Centre and normal in the camera's frame, m.
-void PaintDisc(const camera::BrownConrady& lens, const Eigen::Vector3d& centre,
+void PaintDisc(const camera::Lens& lens, const Eigen::Vector3d& centre,
                const Eigen::Vector3d& normal, double diameter, double level, SyntheticScene* scene);
 
 }  // namespace softforce::testing

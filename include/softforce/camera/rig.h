@@ -12,7 +12,7 @@ namespace softforce::camera {
 struct Camera {
   std::string name;
   int width = 0, height = 0;  // px
-  BrownConrady lens;
+  Lens lens;
   Eigen::Isometry3d T_camera_rig = Eigen::Isometry3d::Identity();
 };
 
