@@ -17,8 +17,9 @@ int RunProgram(int argc, char** argv) {
   program.set_version_flag("--version", std::string("softforce ") + softforce::base::kVersion);
   program.require_subcommand(1);
   const std::vector<softforce::apps::Command> commands{
-      softforce::apps::AddRun(&program),      softforce::apps::AddIdentify(&program),
-      softforce::apps::AddMesh(&program),     softforce::apps::AddRecord(&program),
+      softforce::apps::AddRun(&program),      softforce::apps::AddCalibrate(&program),
+      softforce::apps::AddIdentify(&program), softforce::apps::AddMesh(&program),
+      softforce::apps::AddRecord(&program),   softforce::apps::AddRig(&program),
       softforce::apps::AddSimulate(&program), softforce::apps::AddTarget(&program),
       softforce::apps::AddValidate(&program)};
   try {

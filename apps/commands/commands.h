@@ -12,9 +12,11 @@ struct Command {
   std::function<int()> run;
 };
 
+Command AddCalibrate(CLI::App* program);
 Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
 Command AddRecord(CLI::App* program);
+Command AddRig(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);
 Command AddTarget(CLI::App* program);

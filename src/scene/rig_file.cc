@@ -1,144 +1,157 @@
 #include "softforce/scene/rig_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <fstream>
 
-#include "scene/sections.h"
+#include "scene/rig_formats.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
-#include "softforce/geometry/rigid.h"
 
 namespace softforce::scene {
-namespace {
 
-constexpr double kMaxRotationDefect = 1e-6;
-
-}  // namespace
-
-Eigen::Isometry3d ReadTransform(const YamlValue& value) {
-  Eigen::Matrix4d T;
-  const std::vector<YamlValue> rows = value.Items({4});
-  for (int i = 0; i < 4; ++i) T.row(i) = Eigen::Vector4d(rows[i].Numbers({4}).data());
-
-  if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    rows[3].Fail("got another last row, expected [0, 0, 0, 1]");
-  }
-  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  const double defect = geometry::RotationDefect(R);
-  if (!(defect <= kMaxRotationDefect)) {
-    value.Fail(fmt::format("rotation has determinant {:.7g} and is off by {:.2g}, expected "
-                           "determinant 1 and at most {:g} off in any entry of R'R - I",
-                           R.determinant(), defect, kMaxRotationDefect),
-               "Write the matrix with at least 7 digits, as the calibration gave it.");
-  }
-  return Eigen::Isometry3d(T);
-}
+namespace fs = std::filesystem;
 
 namespace {
 
-camera::Lens ReadLens(YamlMap& map) {
-  camera::Lens lens;
-  lens.model = map.Required("model").Choice<camera::LensModel>(
-      {{"brown_conrady", camera::LensModel::kBrownConrady},
-       {"kannala_brandt", camera::LensModel::kKannalaBrandt}});
-  const YamlValue intrinsics = map.Required("intrinsics", "They are [fx, fy, cx, cy] in px.");
-  const std::vector<double> numbers = intrinsics.Numbers({4});
-  lens.fx = numbers[0];
-  lens.fy = numbers[1];
-  lens.cx = numbers[2];
-  lens.cy = numbers[3];
-  if (lens.fx <= 0 || lens.fy <= 0) {
-    intrinsics.Fail(
-        fmt::format("got the focal lengths {} and {}, expected more than 0 px", lens.fx, lens.fy));
+RigFormat FormatOf(const YamlValue& file) {
+  if (!file.IsMap()) file.Fail("got no keys, expected a rig of softforce, OpenCV, Kalibr or ROS");
+  const std::vector<std::string> keys = YamlMap(file).Keys();
+  const auto has = [&](const std::string& key) {
+    return std::count(keys.begin(), keys.end(), key) > 0;
+  };
+  const auto has_any = [&](const std::vector<std::string>& some) {
+    return std::any_of(some.begin(), some.end(), has);
+  };
+  if (has_any({"softforce", "cameras"})) return RigFormat::kSoftforce;
+  if (has("cam0")) return RigFormat::kKalibr;
+  if (has("distortion_model")) return RigFormat::kRos;
+  const bool extrinsics = has("R") && has("T");
+  if (extrinsics || has_any({"M1", "K1", "cameraMatrix1", "camera_matrix1", "cameraMatrix",
+                             "camera_matrix", "Camera_Matrix", "K"})) {
+    return RigFormat::kOpenCv;
   }
-  const bool fisheye = lens.model == camera::LensModel::kKannalaBrandt;
-  const std::vector<double> distortion =
-      map.Required("distortion", fisheye ? "It is [k1, k2, k3, k4]."
-                                         : "It is [k1, k2, p1, p2], then k3, then k4, k5, k6.")
-          .Numbers(fisheye ? std::vector<int>{4} : std::vector<int>{4, 5, 8});
-  std::copy(distortion.begin(), distortion.end(), lens.distortion.begin());
-  return lens;
+  file.Fail("got only the keys " + Join(keys) +
+            ", expected \"softforce\" (rig.yaml), \"cam0\" (Kalibr), \"distortion_model\" "
+            "(ROS) or \"M1\" or \"cameraMatrix\" (OpenCV)");
 }
 
-camera::Camera ReadCamera(YamlMap& map) {
-  camera::Camera camera;
-  camera.lens = ReadLens(map);
-  const std::vector<YamlValue> resolution = map.Required("resolution").Items({2});
-  camera.width = resolution[0].Integer(1);
-  camera.height = resolution[1].Integer(1);
-  camera.T_camera_rig = ReadTransform(map.Required("T_camera_rig"));
-  return camera;
-}
-
-std::vector<camera::Camera> ReadRigCameras(YamlMap& map) {
-  std::vector<camera::Camera> cameras;
-  for (const std::string& name : map.Keys()) {
-    cameras.push_back(map.Required(name).ReadMap(ReadCamera));
-    cameras.back().name = name;
+std::string NameOf(RigFormat format) {
+  switch (format) {
+    case RigFormat::kSoftforce:
+      return "softforce";
+    case RigFormat::kOpenCv:
+      return "OpenCV";
+    case RigFormat::kKalibr:
+      return "Kalibr";
+    case RigFormat::kRos:
+      return "ROS";
   }
-  if (cameras.empty()) map.value().Fail("got no cameras, expected at least one");
-  return cameras;
+  return "";
 }
 
-// The shortest digits that read back as the same double.
-template <class Numbers>
-std::string List(const Numbers& numbers) {
-  return fmt::format("[{}]", fmt::join(numbers, ", "));
-}
-
-std::string Rows(const Eigen::Isometry3d& T, const std::string& indent) {
-  std::string rows;
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector4d row = T.matrix().row(i);
-    rows += indent + "- " + List(row) + "\n";
+// One format for all; several files only where a rig has several.
+RigFormat CommonFormat(const std::vector<YamlValue>& values) {
+  const RigFormat format = FormatOf(values[0]);
+  for (size_t i = 1; i < values.size(); ++i) {
+    const RigFormat other = FormatOf(values[i]);
+    if (other != format) {
+      values[i].Fail(fmt::format("is a file of {}, expected one of {} as the first is",
+                                 NameOf(other), NameOf(format)));
+    }
+    if (format == RigFormat::kSoftforce || format == RigFormat::kKalibr) {
+      values[i].Fail(
+          fmt::format("is a second file, expected one: {} has a rig in one file", NameOf(format)));
+    }
   }
-  return rows;
+  return format;
 }
 
-std::string ToYaml(const camera::Camera& camera) {
-  const camera::Lens& lens = camera.lens;
-  const std::array<double, 4> intrinsics = {lens.fx, lens.fy, lens.cx, lens.cy};
-  std::string yaml = "  " + YAML::Dump(YAML::Node(camera.name)) + ":\n";
-  const bool fisheye = lens.model == camera::LensModel::kKannalaBrandt;
-  const std::vector<double> distortion(lens.distortion.begin(),
-                                       lens.distortion.begin() + camera::NumDistortion(lens.model));
-  yaml += fmt::format("    model: {}\n", fisheye ? "kannala_brandt" : "brown_conrady");
-  yaml += fmt::format("    resolution: [{}, {}]\n", camera.width, camera.height);
-  yaml += "    intrinsics: " + List(intrinsics) + "  # fx, fy, cx, cy in px\n";
-  yaml += "    distortion: " + List(distortion) +
-          (fisheye ? "  # k1, k2, k3, k4\n" : "  # k1, k2, p1, p2, k3, k4, k5, k6\n");
-  yaml += "    T_camera_rig:  # metres\n" + Rows(camera.T_camera_rig, "      ");
-  return yaml;
-}
-
-}  // namespace
-
-camera::Rig LoadRig(const std::filesystem::path& file) {
-  return ReadYamlFile(file, [](YamlMap& root) {
-    camera::Rig rig;
-    rig.cameras = root.Required("cameras").ReadMap(ReadRigCameras);
-    if (const auto T = root.Optional("T_rig_robot")) rig.T_rig_robot = ReadTransform(*T);
-    return rig;
-  });
-}
-
-void SaveRig(const camera::Rig& rig, const std::filesystem::path& file) {
-  std::string yaml = fmt::format("softforce: {}\ncameras:\n", kFormatVersion);
-  for (const camera::Camera& camera : rig.cameras) yaml += ToYaml(camera);
-  if (rig.T_rig_robot) yaml += "T_rig_robot:  # metres\n" + Rows(*rig.T_rig_robot, "  ");
-
+void WriteFile(const fs::path& file, const std::string& text) {
   base::PendingFile pending(file);
-  std::ofstream stream(pending.temporary());
-  stream << yaml;
+  std::ofstream stream(pending.temporary(), std::ios::binary);
+  stream << text;
   stream.close();
   if (!stream) {
     throw base::InputError(file.string(), "cannot be written",
                            "Check that its folder exists, may be written to, and has room.");
   }
   pending.Commit();
+}
+
+void SaveRosRig(const camera::Rig& rig, const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) {
+    throw base::InputError(folder.string(), "the folder cannot be made: " + failed.message());
+  }
+  const std::vector<std::string> texts = RosTexts(rig);
+  for (size_t c = 0; c < texts.size(); ++c) {
+    std::string stem = rig.cameras[c].name;
+    std::replace(stem.begin(), stem.end(), '/', '_');  // ROS calls them stereo/left
+    WriteFile(folder / (stem + ".yaml"), texts[c]);
+  }
+}
+
+}  // namespace
+
+camera::Rig LoadRig(const fs::path& file) { return LoadRig(std::vector<fs::path>{file}, {}); }
+
+camera::Rig LoadRig(const std::vector<fs::path>& files, const RigReadOptions& options) {
+  if (files.empty()) throw base::InputError("rig", "got no file, expected at least one");
+  std::vector<YamlValue> values;
+  for (const fs::path& file : files) values.push_back(YamlValue::FromFile(file));
+  switch (CommonFormat(values)) {
+    case RigFormat::kSoftforce:
+      break;
+    case RigFormat::kOpenCv:
+      return ReadOpenCvRig(values, options);
+    case RigFormat::kKalibr:
+      return ReadKalibrRig(values[0]);
+    case RigFormat::kRos:
+      return ReadRosRig(values);
+  }
+  return ReadSoftforceRig(files[0]);
+}
+
+std::optional<RigStatistics> LoadRigStatistics(const fs::path& file) {
+  std::optional<RigStatistics> statistics;
+  if (FormatOf(YamlValue::FromFile(file)) == RigFormat::kSoftforce) {
+    ReadSoftforceRig(file, &statistics);
+  }
+  return statistics;
+}
+
+void SaveRig(const camera::Rig& rig, const fs::path& file,
+             const std::optional<RigStatistics>& statistics) {
+  WriteFile(file, SoftforceText(rig, statistics));
+}
+
+void SaveRigAs(const camera::Rig& rig, RigFormat format, const fs::path& path) {
+  switch (format) {
+    case RigFormat::kSoftforce:
+      return SaveRig(rig, path);
+    case RigFormat::kOpenCv:
+      return WriteFile(path, OpenCvText(rig, path.string()));
+    case RigFormat::kKalibr:
+      return WriteFile(path, KalibrText(rig, path.string()));
+    case RigFormat::kRos:
+      return SaveRosRig(rig, path);
+  }
+}
+
+RigFormat ParseRigFormat(const std::string& word, const std::string& where) {
+  const std::vector<std::pair<std::string, RigFormat>> formats = {
+      {"softforce", RigFormat::kSoftforce},
+      {"opencv", RigFormat::kOpenCv},
+      {"kalibr", RigFormat::kKalibr},
+      {"ros", RigFormat::kRos}};
+  std::vector<std::string> words;
+  for (const auto& [known, format] : formats) {
+    if (known == word) return format;
+    words.push_back(known);
+  }
+  throw base::InputError(where, "got \"" + word + "\", expected one of " + Join(words),
+                         DidYouMean(word, words));
 }
 
 }  // namespace softforce::scene

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
 
 #include "softforce/base/input_error.h"
 
@@ -20,6 +21,15 @@ bool IsFile(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
+std::string Contents(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw InputError(file.string(), "cannot be read", "Check that you may read it.");
+  // OpenCV's first line is "%YAML:1.0", which no version of YAML allows.
+  if (text.rfind("%YAML:", 0) == 0) text.erase(0, std::min(text.find('\n'), text.size()));
+  return text;
+}
+
 }  // namespace
 
 YamlValue::YamlValue(YAML::Node node, fs::path file, int line, std::string key_path)
@@ -28,9 +38,7 @@ YamlValue::YamlValue(YAML::Node node, fs::path file, int line, std::string key_p
 YamlValue YamlValue::FromFile(const fs::path& file) {
   if (!IsFile(file)) throw InputError(file.string(), "there is no such file");
   try {
-    return YamlValue(YAML::LoadFile(file.string()), file, 1, "");
-  } catch (const YAML::BadFile&) {
-    throw InputError(file.string(), "cannot be read", "Check that you may read it.");
+    return YamlValue(YAML::Load(Contents(file)), file, 1, "");
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}", file.string(), error.mark.line + 1),
                      "is not valid YAML: " + error.msg,

@@ -29,6 +29,7 @@ class YamlValue {
 
   // "scene.yaml:12: markers: points[3]: position"
   std::string where() const;
+  const std::filesystem::path& file() const { return file_; }
 
   std::string Text() const;  // not empty
   int Integer(int at_least) const;

@@ -9,6 +9,7 @@
 namespace softforce::scene {
 namespace {
 
+namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::kRigText;
@@ -75,6 +76,45 @@ TEST(SaveRig, WritesAFisheyeThatLoadRigReadsBack) {
   EXPECT_EQ(loaded.cameras[0].lens.model, camera::LensModel::kBrownConrady);
   EXPECT_EQ(loaded.cameras[1].lens.model, camera::LensModel::kKannalaBrandt);
   EXPECT_EQ(loaded.cameras[1].lens.distortion, rig.cameras[1].lens.distortion);
+}
+
+TEST(SaveRig, KeepsTheStatisticsOfTheCalibration) {
+  RigStatistics statistics;
+  statistics.board = "chessboard:9x6,square=25mm";
+  statistics.views = 14;
+  statistics.rms_px = 0.2134567890123;
+  statistics.held_out_px = 1.0 / 3;
+  statistics.cameras = {{"left", 14, 756, 0.2}, {"upper: 2", 13, 700, 0.3}};
+  statistics.parameters = {"left: fx", "upper: 2: translation x"};
+  statistics.covariance = (Eigen::Matrix2d() << 0.16, -1e-5, -1e-5, 1.0 / 3e9).finished();
+  const fs::path file = TempFolder() / "saved.yaml";
+
+  SaveRig(LoadText(kRigText), file, statistics);
+  const std::optional<RigStatistics> loaded = LoadRigStatistics(file);
+
+  ASSERT_TRUE(loaded.has_value());
+  EXPECT_EQ(loaded->board, statistics.board);
+  EXPECT_EQ(loaded->views, 14);
+  EXPECT_EQ(loaded->rms_px, statistics.rms_px);
+  EXPECT_EQ(loaded->held_out_px, statistics.held_out_px);
+  EXPECT_TRUE(std::isnan(loaded->held_out_board));
+  ASSERT_EQ(loaded->cameras.size(), 2);
+  EXPECT_EQ(loaded->cameras[1].name, "upper: 2");
+  EXPECT_EQ(loaded->cameras[1].points, 700);
+  EXPECT_EQ(loaded->parameters, statistics.parameters);
+  EXPECT_EQ(loaded->covariance, statistics.covariance);
+  EXPECT_EQ(LoadRig(file).cameras.size(), 2);  // which does not need them
+}
+
+TEST(LoadRigStatistics, GivesNothingForARigWithoutThem) {
+  EXPECT_FALSE(LoadRigStatistics(WriteFile(TempFolder() / "rig.yaml", kRigText)).has_value());
+}
+
+TEST(LoadRig, RefusesACovarianceOfAnotherSize) {
+  EXPECT_THAT(RigRefusal("softforce: 1",
+                         "softforce: 1\ncalibration: {board: b, views: 3, parameters: [a, b], "
+                         "covariance: [[1], [1]]}"),
+              HasSubstr("calibration: covariance[1]: got 1 items, expected 2"));
 }
 
 TEST(SaveRig, RefusesAFolderThatIsNotThere) {
@@ -146,10 +186,10 @@ TEST(LoadRig, RefusesACameraGivenTwice) {
 }
 
 TEST(LoadRig, RefusesAnUnknownKey) {
-  EXPECT_EQ(
-      RigRefusal("softforce: 1", "softforce: 1\nT_rig_robots: 1"),
-      "rig.yaml:2: T_rig_robots: unknown key, expected one of T_rig_robot, cameras, softforce\n"
-      "  Did you mean \"T_rig_robot\"?");
+  EXPECT_EQ(RigRefusal("softforce: 1", "softforce: 1\nT_rig_robots: 1"),
+            "rig.yaml:2: T_rig_robots: unknown key, expected one of T_rig_robot, calibration, "
+            "cameras, softforce\n"
+            "  Did you mean \"T_rig_robot\"?");
 }
 
 TEST(LoadRig, RefusesARigWithoutCameras) {

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace softforce::report {
+
+// The style sheet of the page.
+extern const char* const kPageStyle;
+
+}  // namespace softforce::report
