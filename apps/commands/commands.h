@@ -16,6 +16,7 @@ Command AddCalibrate(CLI::App* program);
 Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
 Command AddRecord(CLI::App* program);
+Command AddRegister(CLI::App* program);
 Command AddRig(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);

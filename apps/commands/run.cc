@@ -119,6 +119,9 @@ Command AddRun(CLI::App* program) {
   app->add_option("--registration-frames", arguments->options.registration_frames,
                   "Frames searched for base fiducials to find where the cameras stand")
       ->capture_default_str();
+  app->add_option("--watch-rig", arguments->options.watch_rig,
+                  "Look whether the rig was bumped in every so many frames; 0: never")
+      ->capture_default_str();
   app->add_option(
          "--common-model-error", arguments->options.tracker.estimator.common_model_error,
          "Model error that shifts or turns all markers together, as a share of the largest "

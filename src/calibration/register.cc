@@ -69,6 +69,19 @@ int FiducialRegistration::num_sightings() const {
   return count;
 }
 
+std::vector<MeanTag> FiducialRegistration::Means() const {
+  std::vector<MeanTag> tags;
+  for (const CornerMean& mean : means_) {
+    MeanTag tag{mean.camera, mean.fiducial, mean.count, mean.sum, mean.covariance_sum};
+    for (int i = 0; i < 4; ++i) {
+      tag.corners[i] /= mean.count;
+      tag.covariances[i] /= mean.count;
+    }
+    tags.push_back(tag);
+  }
+  return tags;
+}
+
 vision::RigPose FiducialRegistration::SolveTurned(int quarter_turns) const {
   std::vector<vision::PointSighting> sightings;
   for (const CornerMean& mean : means_) {

@@ -16,9 +16,11 @@ namespace softforce::pipeline {
 struct FrameInWork {
   vision::FrameSet set;
   std::vector<CameraDetections> detections;
+  std::vector<std::vector<vision::Tag>> fiducials;  // per camera; empty: not looked for
   FrameResult result;
-  Eigen::Matrix3Xd u;  // m, displacements of the nodes in this frame
-  cv::Mat overlay;     // the picture with everything drawn over it
+  Eigen::Isometry3d T_rig_robot;  // where the rig stands in this frame
+  Eigen::Matrix3Xd u;             // m, displacements of the nodes in this frame
+  cv::Mat overlay;                // the picture with everything drawn over it
 };
 
 // One step of the work on every frame.

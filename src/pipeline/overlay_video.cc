@@ -57,25 +57,19 @@ render::OverlayScene Content(const scene::Scene& scene, const World& world,
 }  // namespace
 
 OverlayVideo::OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene,
-                           const World& world, const camera::Rig& rig,
-                           const Eigen::Isometry3d& T_rig_robot, int width)
-    : scene_(scene),
-      world_(world),
-      rig_(rig),
-      T_rig_robot_(T_rig_robot),
-      width_(width),
-      writer_(file, kOverlayRate) {}
+                           const World& world, const camera::Rig& rig, int width)
+    : scene_(scene), world_(world), rig_(rig), width_(width), writer_(file, kOverlayRate) {}
 
 cv::Mat OverlayVideo::Draw(const vision::FrameSet& frame, const FrameResult& result,
-                           const Eigen::Matrix3Xd& u) const {
+                           const Eigen::Matrix3Xd& u, const Eigen::Isometry3d& T_rig_robot) const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + u;
   const render::OverlayScene content = Content(scene_, world_, result, x);
   std::vector<cv::Mat> pictures;
   std::vector<std::string> names;
   for (size_t c = 0; c < rig_.cameras.size(); ++c) {
     const camera::Camera& camera = rig_.cameras[c];
-    pictures.push_back(render::DrawOverlay(frame.pictures[c], camera,
-                                           camera.T_camera_rig * T_rig_robot_, content));
+    pictures.push_back(
+        render::DrawOverlay(frame.pictures[c], camera, camera.T_camera_rig * T_rig_robot, content));
     names.push_back(camera.name);
   }
   return render::SideBySide(pictures, names, width_);

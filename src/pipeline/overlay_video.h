@@ -14,11 +14,11 @@ class OverlayVideo {
  public:
   // World, rig and scene must outlive it.
   OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene, const World& world,
-               const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot, int width);
+               const camera::Rig& rig, int width);
 
   // May be called from several threads.
-  cv::Mat Draw(const vision::FrameSet& frame, const FrameResult& result,
-               const Eigen::Matrix3Xd& u) const;
+  cv::Mat Draw(const vision::FrameSet& frame, const FrameResult& result, const Eigen::Matrix3Xd& u,
+               const Eigen::Isometry3d& T_rig_robot) const;
 
   void Add(const cv::Mat& drawn) { writer_.Add(drawn); }
   void Commit() { writer_.Commit(); }
@@ -27,7 +27,6 @@ class OverlayVideo {
   const scene::Scene& scene_;
   const World& world_;
   const camera::Rig& rig_;
-  Eigen::Isometry3d T_rig_robot_;
   int width_;
   vision::VideoWriter writer_;
 };

@@ -15,6 +15,13 @@ class ParallelDetector {
 
   std::vector<CameraDetections> Markers(const vision::FrameSet& set);
 
+  // As Detector::FiducialsNear.
+  std::vector<std::vector<vision::Tag>> FiducialsNear(
+      const vision::FrameSet& set, const std::vector<CameraDetections>& markers,
+      const std::vector<std::vector<Detector::FiducialPlace>>& places) {
+    return detectors_.local().FiducialsNear(set, markers, places);
+  }
+
  private:
   tbb::enumerable_thread_specific<Detector> detectors_;
 };

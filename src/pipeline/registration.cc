@@ -40,16 +40,47 @@ std::vector<CameraDetections> Detector::Markers(const vision::FrameSet& frame) c
   return cameras;
 }
 
-std::vector<std::vector<vision::Tag>> Detector::Fiducials(const vision::FrameSet& frame) const {
-  std::vector<std::vector<vision::Tag>> cameras(frame.pictures.size());
+std::vector<vision::Tag> Detector::AllFiducials(const cv::Mat& picture) const {
+  std::vector<vision::Tag> all;
   std::vector<std::string> searched;
   for (const calibration::Fiducial& fiducial : scene_.cameras.fiducials) {
     if (std::find(searched.begin(), searched.end(), fiducial.family) != searched.end()) continue;
     searched.push_back(fiducial.family);
-    for (size_t c = 0; c < cameras.size(); ++c) {
-      const std::vector<vision::Tag> tags = Tags(frame.pictures[c], fiducial.family);
-      cameras[c].insert(cameras[c].end(), tags.begin(), tags.end());
+    const std::vector<vision::Tag> tags = Tags(picture, fiducial.family);
+    all.insert(all.end(), tags.begin(), tags.end());
+  }
+  return all;
+}
+
+std::vector<std::vector<vision::Tag>> Detector::Fiducials(const vision::FrameSet& frame) const {
+  std::vector<std::vector<vision::Tag>> cameras;
+  cameras.reserve(frame.pictures.size());
+  for (const cv::Mat& picture : frame.pictures) cameras.push_back(AllFiducials(picture));
+  return cameras;
+}
+
+std::vector<std::vector<vision::Tag>> Detector::FiducialsNear(
+    const vision::FrameSet& frame, const std::vector<CameraDetections>& markers,
+    const std::vector<std::vector<FiducialPlace>>& places) const {
+  std::vector<std::vector<vision::Tag>> cameras(frame.pictures.size());
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    for (const FiducialPlace& place : places[c]) {
+      const calibration::Fiducial& fiducial = scene_.cameras.fiducials[place.fiducial];
+      const bool among_markers = scene_.markers.type == scene::MarkerType::kAprilTag &&
+                                 scene_.markers.family == fiducial.family;
+      std::vector<vision::Tag> tags =
+          among_markers ? markers[c].tags : Tags(frame.pictures[c](place.area), fiducial.family);
+      for (vision::Tag& tag : tags) {
+        if (tag.id != fiducial.id) continue;
+        if (!among_markers) {
+          for (Eigen::Vector2d& corner : tag.corners) {
+            corner += Eigen::Vector2d(place.area.x, place.area.y);
+          }
+        }
+        cameras[c].push_back(std::move(tag));
+      }
     }
+    if (2 * cameras[c].size() < places[c].size()) cameras[c] = AllFiducials(frame.pictures[c]);
   }
   return cameras;
 }
@@ -68,7 +99,7 @@ ShowFirstFrames FirstFramesOf(vision::Recording* recording, int frames) {
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
                  const ShowFirstFrames& show) {
   if (scene.cameras.fiducials.empty()) {
-    if (rig.T_rig_robot) return {*rig.T_rig_robot, geometry::Matrix6d::Zero(), std::nullopt};
+    if (rig.T_rig_robot) return {*rig.T_rig_robot, geometry::Matrix6d::Zero(), std::nullopt, {}};
     throw base::InputError(
         scene.file.string() + ": cameras",
         "nothing says where the cameras stand: there are no fiducials here and no T_rig_robot in " +
@@ -99,7 +130,7 @@ Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detect
                            "Check the corners' places and order (TL TR BR BL), and that rig.yaml "
                            "belongs to these cameras.");
   }
-  return {pose.T_rig_robot, pose.covariance, pose};
+  return {pose.T_rig_robot, pose.covariance, pose, registration.Means()};
 }
 
 }  // namespace softforce::pipeline

@@ -17,8 +17,20 @@ class Detector {
   std::vector<CameraDetections> Markers(const vision::FrameSet& frame) const;
   std::vector<std::vector<vision::Tag>> Fiducials(const vision::FrameSet& frame) const;
 
+  // The same, looking first only around where they were: `places[camera]` are the fiducials that
+  // the camera saw and the parts of its picture to search. Where it finds fewer than half of them
+  // there it searches all of the picture. `markers`: what was already found in the frame.
+  struct FiducialPlace {
+    int fiducial = -1;
+    cv::Rect area;
+  };
+  std::vector<std::vector<vision::Tag>> FiducialsNear(
+      const vision::FrameSet& frame, const std::vector<CameraDetections>& markers,
+      const std::vector<std::vector<FiducialPlace>>& places) const;
+
  private:
   std::vector<vision::Tag> Tags(const cv::Mat& picture, const std::string& family) const;
+  std::vector<vision::Tag> AllFiducials(const cv::Mat& picture) const;
 
   const scene::Scene& scene_;
   std::map<std::string, vision::TagDetector> detectors_;  // by family
@@ -36,6 +48,7 @@ struct Standing {
   Eigen::Isometry3d T_rig_robot;
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // see vision::RigPose
   std::optional<vision::RigPose> from_fiducials;
+  std::vector<calibration::MeanTag> fiducials;  // as the cameras saw them
 };
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
                  const ShowFirstFrames& show);

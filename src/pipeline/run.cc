@@ -16,6 +16,7 @@ void RunOptions::Check() const {
   if (registration_frames < 1) {
     throw base::InputError("--registration-frames", "must be 1 or more");
   }
+  if (watch_rig < 0) throw base::InputError("--watch-rig", "must be 0 or more");
   if (overlay_width < 64) throw base::InputError("--overlay-width", "must be 64 px or more");
   if (threads < 0 || threads > kMaxThreads) {
     throw base::InputError("--threads",

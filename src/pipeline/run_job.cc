@@ -45,23 +45,40 @@ RunJob::RunJob(const std::filesystem::path& scene_file, const RunOptions& option
       detector_(scene_),
       standing_(PlaceRig()),
       tracker_(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
-               Corrected(options.tracker, correction_)) {}
+               Corrected(options.tracker, correction_)),
+      watch_(scene_, rig_, standing_, options.registration_frames,
+             options.show_progress ? base::TellBesideProgress : SourceWatch::Tell()) {}
 
 Standing RunJob::PlaceRig() {
   feed_.Start(options_.show_progress ? base::TellBesideProgress : SourceWatch::Tell());
   return FindRig(scene_, rig_, Detector(scene_), feed_.FirstFrames());
 }
 
+// A function of the frame alone: the places are those of the first frames, also after a bump.
+void RunJob::Detect(FrameInWork* frame) {
+  frame->detections = detector_.Markers(frame->set);
+  if (options_.watch_rig == 0 || frame->set.frame % options_.watch_rig != 0) return;
+  frame->fiducials = detector_.FiducialsNear(frame->set, frame->detections, watch_.places());
+}
+
 void RunJob::Estimate(FrameInWork* frame) {
-  frame->result = tracker_.Process(frame->set.frame, frame->set.time_s, frame->detections);
+  const int number = frame->set.frame;
+  const RigWatch::Verdict verdict = watch_.Look(number, frame->fiducials);
+  const Standing& standing = watch_.standing();
+  if (verdict.placed_anew) tracker_.PlaceRig(standing.T_rig_robot, standing.covariance);
+  frame->result = verdict.trusted ? tracker_.Process(number, frame->set.time_s, frame->detections)
+                                  : tracker_.Skip(number, frame->set.time_s, verdict.reason);
+  frame->T_rig_robot = standing.T_rig_robot;
   frame->u = tracker_.state().u;
+  if (options_.watch_rig == 0 || !verdict.trusted) return;
+  watch_.LookAtMarkers(number, tracker_.observations(), world_.mesh().nodes, frame->u,
+                       options_.tracker.estimator.common_model_error);
 }
 
 std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress) {
   using Order = Stage::Order;
   std::vector<Stage> stages{
-      {"detect", Order::kAny,
-       [this](FrameInWork* frame) { frame->detections = detector_.Markers(frame->set); }},
+      {"detect", Order::kAny, [this](FrameInWork* frame) { Detect(frame); }},
       {"estimate", Order::kInOrder, [this](FrameInWork* frame) { Estimate(frame); }}};
   for (Stage& stage : outputs->Stages()) stages.push_back(std::move(stage));
   stages.push_back({"report", Order::kInOrder, [this, progress](FrameInWork* frame) {
@@ -97,8 +114,9 @@ void RunJob::ProcessFrames(RunOutputs* outputs) {
 }
 
 void RunJob::WriteSummaryFile() {
-  RunFacts facts{scene_,   options_,      tally_, world_, correction_, standing_.from_fiducials,
-                 index_w_, feed_.Inputs()};
+  RunFacts facts{scene_,   options_,       tally_,
+                 world_,   correction_,    standing_.from_fiducials,
+                 index_w_, feed_.Inputs(), watch_.events()};
   WriteSummary(facts, options_.out / "summary.json");
 }
 
@@ -119,7 +137,7 @@ RunReport RunJob::Finish() {
   const auto start = std::chrono::steady_clock::now();
   PrepareFolder(options_.out);
   LogSetUp();
-  RunOutputs outputs(options_, scene_, world_, rig_, standing_.T_rig_robot);
+  RunOutputs outputs(options_, scene_, world_, rig_);
 
   ProcessFrames(&outputs);
   feed_.Finish();
@@ -131,7 +149,9 @@ RunReport RunJob::Finish() {
   report.live = feed_.live();
   report.source = feed_.Report();
   report.recorded = feed_.Recorded();
-  tally_.Judge(feed_.Messages(), feed_.ShortOf());
+  std::vector<std::string> messages = feed_.Messages();
+  for (const RigEvent& event : watch_.events()) messages.push_back(event.text);
+  tally_.Judge(messages, feed_.ShortOf());
   outputs.Commit();
   WriteSummaryFile();
   return report;

@@ -8,6 +8,7 @@
 #include "pipeline/mesh_correction.h"
 #include "pipeline/parallel_detector.h"
 #include "pipeline/registration.h"
+#include "pipeline/rig_watch.h"
 #include "pipeline/run_outputs.h"
 #include "pipeline/run_tally.h"
 #include "softforce/base/progress.h"
@@ -26,6 +27,7 @@ class RunJob {
  private:
   Standing PlaceRig();
   std::vector<Stage> Stages(RunOutputs* outputs, base::Progress* progress);
+  void Detect(FrameInWork* frame);
   void Estimate(FrameInWork* frame);
   std::string Note() const;
   void ProcessFrames(RunOutputs* outputs);
@@ -42,6 +44,7 @@ class RunJob {
   ParallelDetector detector_;
   const Standing standing_;
   Tracker tracker_;
+  RigWatch watch_;
 
   StageClock clock_;
   RunTally tally_;

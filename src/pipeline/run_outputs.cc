@@ -11,11 +11,10 @@ ActuatorKinds KindsOf(const World& world) {
 }  // namespace
 
 RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, const World& world,
-                       const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot)
+                       const camera::Rig& rig)
     : world_(world), tables_(options.out, KindsOf(world)) {
   if (options.overlay) {
-    overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, T_rig_robot,
-                     options.overlay_width);
+    overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, options.overlay_width);
   }
   if (options.vtu) series_.emplace(options.out);
 }
@@ -27,7 +26,8 @@ std::vector<Stage> RunOutputs::Stages() {
       {"write", Order::kInOrder, [this](FrameInWork* frame) { tables_.Add(frame->result); }});
   if (overlay_) {
     stages.push_back({"draw", Order::kAny, [this](FrameInWork* frame) {
-                        frame->overlay = overlay_->Draw(frame->set, frame->result, frame->u);
+                        frame->overlay =
+                            overlay_->Draw(frame->set, frame->result, frame->u, frame->T_rig_robot);
                       }});
     stages.push_back({"overlay", Order::kInOrder,
                       [this](FrameInWork* frame) { overlay_->Add(frame->overlay); }});

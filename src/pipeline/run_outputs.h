@@ -16,7 +16,7 @@ class RunOutputs {
  public:
   // Scene, world and rig must outlive it. Throws InputError if a file cannot be written.
   RunOutputs(const RunOptions& options, const scene::Scene& scene, const World& world,
-             const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot);
+             const camera::Rig& rig);
 
   // The steps that write a frame; this must outlive them.
   std::vector<Stage> Stages();

@@ -35,6 +35,12 @@ Json Registration(const vision::RigPose& pose) {
           {"sd_rotation_mrad", {1e3 * sd(3), 1e3 * sd(4), 1e3 * sd(5)}}};
 }
 
+Json Event(const RigEvent& event) {
+  Json json{{"event", Name(event.kind)}, {"frame", event.frame}, {"told_in_frame", event.told}};
+  if (event.pose) json["registration"] = Registration(*event.pose);
+  return json;
+}
+
 Json Live(const vision::SourceReport& source) {
   Json live{{"sets_delivered", source.delivered}, {"sets_dropped", source.dropped}};
   for (const vision::CameraReport& camera : source.cameras) {
@@ -93,6 +99,8 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   }
   if (facts.registration) json["registration"] = Registration(*facts.registration);
 
+  for (const RigEvent& event : facts.rig_events) json["rig_events"].push_back(Event(event));
+
   if (!facts.tally.reduced_chi2.empty()) {
     std::vector<double> sorted = facts.tally.reduced_chi2;
     std::sort(sorted.begin(), sorted.end());
@@ -110,6 +118,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   const RunOptions& options = facts.options;
   json["options"] = {{"first_frame", options.first_frame},
                      {"registration_frames", options.registration_frames},
+                     {"watch_rig", options.watch_rig},
                      {"threads", options.threads > 0 ? options.threads : DefaultThreads()},
                      {"overlay", options.overlay},
                      {"vtu", options.vtu},

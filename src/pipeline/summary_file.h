@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "pipeline/mesh_correction.h"
+#include "pipeline/rig_watch.h"
 #include "pipeline/run_tally.h"
 #include "softforce/pipeline/run.h"
 #include "softforce/vision/rig_pose.h"
@@ -19,6 +20,7 @@ struct RunFacts {
   std::optional<vision::RigPose> registration;
   double index_w = NAN;  // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
   std::vector<std::filesystem::path> inputs;
+  std::vector<RigEvent> rig_events;
 };
 
 void WriteSummary(const RunFacts& facts, const std::filesystem::path& file);

@@ -127,16 +127,43 @@ FrameResult Tracker::Process(int frame, double time_s,
     result.forces = ForceResults(estimate);
   }
   result.markers = MarkerResults(located, rejected);
+  AddActuators(actuation, &result);
+  return result;
+}
+
+void Tracker::AddActuators(const fem::Actuation& actuation, FrameResult* result) const {
   for (size_t c = 0; c < world_.solver->body().cables.size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
-    result.cables.push_back({world_.solver->body().cables[c].name, estimator_.state().tension(i),
-                             estimator_.state().shortening(i)});
+    result->cables.push_back({world_.solver->body().cables[c].name, estimator_.state().tension(i),
+                              estimator_.state().shortening(i)});
   }
   for (size_t k = 0; k < actuation.pressures.size(); ++k) {
-    result.chambers.push_back(
+    result->chambers.push_back(
         {world_.solver->body().chambers[k].name, estimator_.state().load.actuation.pressures[k]});
   }
+}
+
+FrameResult Tracker::Skip(int frame, double time_s, const std::string& reason) {
+  FrameResult result;
+  result.frame = frame;
+  result.time_s = time_s;
+  result.status = estimation::ForceEstimate::Status::kInconsistent;
+  result.reason = reason;
+  const fem::Actuation actuation = ActuationAt(scene_, time_s);
+  estimator_.Advance(actuation);
+  ++frames_without_forces_;
+  observations_.clear();
+  const size_t features = features_.features().size();
+  result.markers =
+      MarkerResults(std::vector<FeatureObservation>(features), std::vector<char>(features, 0));
+  AddActuators(actuation, &result);
   return result;
+}
+
+void Tracker::PlaceRig(const Eigen::Isometry3d& T_rig_robot,
+                       const geometry::Matrix6d& rig_covariance) {
+  T_rig_robot_ = T_rig_robot;
+  estimator_.SetRegistrationCovariance(InRobotFrame(rig_covariance, T_rig_robot));
 }
 
 std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& estimate) const {

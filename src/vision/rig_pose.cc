@@ -72,19 +72,29 @@ std::optional<Eigen::Isometry3d> PoseInCamera(const std::vector<NormalisedSighti
     ++points;
   }
   if (points < 4) return std::nullopt;
+  // Lagrange's method refuses fewer than six points that are not on a plane.
+  std::optional<vpHomogeneousMatrix> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto method : {vpPose::DEMENTHON, vpPose::LAGRANGE}) {
+    try {
+      vpHomogeneousMatrix cMo;
+      pose.computePose(method, cMo);
+      const double residual = pose.computeResidual(cMo);
+      if (!(residual < least)) continue;
+      least = residual;
+      best = cMo;
+    } catch (const vpException&) {  // not its kind of points
+    }
+  }
+  if (!best) return std::nullopt;
   try {
-    vpHomogeneousMatrix dementhon, lagrange;
-    pose.computePose(vpPose::DEMENTHON, dementhon);
-    pose.computePose(vpPose::LAGRANGE, lagrange);
-    vpHomogeneousMatrix cMo =
-        pose.computeResidual(dementhon) < pose.computeResidual(lagrange) ? dementhon : lagrange;
-    pose.computePose(vpPose::VIRTUAL_VS, cMo);
-    const Eigen::Isometry3d T = FromVisp(cMo);
-    if (!T.matrix().allFinite()) return std::nullopt;
-    return T;
+    pose.computePose(vpPose::VIRTUAL_VS, *best);
   } catch (const vpException&) {
     return std::nullopt;
   }
+  const Eigen::Isometry3d T = FromVisp(*best);
+  if (!T.matrix().allFinite()) return std::nullopt;
+  return T;
 }
 
 // One linearisation of virtual visual servoing over all cameras: the rig moves by a velocity v that
@@ -154,23 +164,11 @@ std::optional<Eigen::Isometry3d> BestStart(const camera::Rig& rig,
   return best;
 }
 
-}  // namespace
-
-RigPose EstimateRigPose(const camera::Rig& rig, const std::vector<PointSighting>& sightings) {
+RigPose Refine(const camera::Rig& rig, const std::vector<NormalisedSighting>& normalised,
+               const Eigen::Isometry3d& start) {
   RigPose pose;
-  const std::vector<NormalisedSighting> normalised = Normalise(rig, sightings);
   pose.num_points = static_cast<int>(normalised.size());
-  if (pose.num_points < 4) {
-    pose.status = RigPose::Status::kTooFewPoints;
-    return pose;
-  }
-  const auto start = BestStart(rig, normalised);
-  if (!start) {
-    pose.status = RigPose::Status::kDegenerate;
-    return pose;
-  }
-
-  Eigen::Isometry3d T = *start;
+  Eigen::Isometry3d T = start;
   Servoing servoing = Linearise(rig, normalised, T);
   pose.status = RigPose::Status::kNotConverged;
   for (int iteration = 0; iteration < 100 && servoing.in_front; ++iteration) {
@@ -198,6 +196,33 @@ RigPose EstimateRigPose(const camera::Rig& rig, const std::vector<PointSighting>
   pose.covariance = std::max(1.0, servoing.chi2 / freedom) * servoing.information.inverse();
   pose.rms_px = ReprojectionRms(rig, normalised, T);
   return pose;
+}
+
+RigPose TooFewPoints(size_t points) {
+  RigPose pose;
+  pose.num_points = static_cast<int>(points);
+  pose.status = RigPose::Status::kTooFewPoints;
+  return pose;
+}
+
+}  // namespace
+
+RigPose EstimateRigPose(const camera::Rig& rig, const std::vector<PointSighting>& sightings) {
+  const std::vector<NormalisedSighting> normalised = Normalise(rig, sightings);
+  if (normalised.size() < 4) return TooFewPoints(normalised.size());
+  const auto start = BestStart(rig, normalised);
+  if (start) return Refine(rig, normalised, *start);
+  RigPose pose;
+  pose.num_points = static_cast<int>(normalised.size());
+  pose.status = RigPose::Status::kDegenerate;
+  return pose;
+}
+
+RigPose RefineRigPose(const camera::Rig& rig, const std::vector<PointSighting>& sightings,
+                      const Eigen::Isometry3d& start) {
+  const std::vector<NormalisedSighting> normalised = Normalise(rig, sightings);
+  if (normalised.size() < 4) return TooFewPoints(normalised.size());
+  return Refine(rig, normalised, start);
 }
 
 }  // namespace softforce::vision

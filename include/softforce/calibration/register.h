@@ -19,6 +19,13 @@ struct Fiducial {
       corners;  // m, robot frame; TL TR BR BL of the upright tag's black square
 };
 
+// Where a camera sees a fiducial, averaged over frames.
+struct MeanTag {
+  int camera = -1, fiducial = -1, count = 0;
+  std::array<Eigen::Vector2d, 4> corners;      // px
+  std::array<Eigen::Matrix2d, 4> covariances;  // px², of the corners of a single frame
+};
+
 // Collects sightings of base fiducials over frames of a rig that stands still, and finds where it
 // stands. The corners of a tag are averaged over the frames, which takes away the pictures' noise
 // but not what is the same in all (lens model, print), so a floor is kept under the averaged
@@ -34,6 +41,8 @@ class FiducialRegistration {
   std::vector<std::string> Families() const;
 
   int num_sightings() const;
+
+  std::vector<MeanTag> Means() const;
 
   // Status kTooFewPoints if no fiducial was seen. If the corners fit badly as given and all tags
   // turned alike by quarter turns fit well, the tags are taken to be mounted that way.

@@ -33,6 +33,7 @@ struct RunOptions {
   int end_frame = std::numeric_limits<int>::max();  // one past the last
   int registration_frames =
       10;               // that are searched for base fiducials before the first frame is estimated
+  int watch_rig = 1;    // look for a bump of the rig in every so many frames; 0: never
   bool overlay = true;  // write overlay.mp4
   bool vtu = false;     // write a ParaView series
   bool show_progress = true;

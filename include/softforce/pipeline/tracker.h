@@ -46,6 +46,12 @@ class Tracker {
 
   FrameResult Process(int frame, double time_s, const std::vector<CameraDetections>& detections);
 
+  // A frame that is not to be relied on, for this reason: the body only follows its actuators.
+  FrameResult Skip(int frame, double time_s, const std::string& reason);
+
+  // The rig stands elsewhere from the next frame on.
+  void PlaceRig(const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance);
+
   const fem::Equilibrium& state() const { return estimator_.state(); }
 
   // What the last frame's forces were estimated from, rejected ones included.
@@ -55,12 +61,13 @@ class Tracker {
   std::vector<PredictedFeature> Predict();
   std::vector<MarkerResult> MarkerResults(const std::vector<FeatureObservation>& observations,
                                           const std::vector<char>& rejected) const;
+  void AddActuators(const fem::Actuation& actuation, FrameResult* result) const;
   std::vector<ForceResult> ForceResults(const estimation::ForceEstimate& estimate) const;
 
   const scene::Scene& scene_;
   const World& world_;
   const camera::Rig& rig_;
-  const Eigen::Isometry3d T_rig_robot_;
+  Eigen::Isometry3d T_rig_robot_;
   TrackerOptions options_;
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;

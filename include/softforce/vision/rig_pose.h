@@ -37,4 +37,8 @@ struct RigPose {
 // residuals where these exceed what the points' own covariances allow.
 RigPose EstimateRigPose(const camera::Rig& rig, const std::vector<PointSighting>& sightings);
 
+// The same from a pose near the right one, with no need of four points in one camera.
+RigPose RefineRigPose(const camera::Rig& rig, const std::vector<PointSighting>& sightings,
+                      const Eigen::Isometry3d& start);
+
 }  // namespace softforce::vision

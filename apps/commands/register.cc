@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "commands/camera_sources.h"
+#include "commands/commands.h"
+#include "commands/live_options.h"
+#include "commands/stop.h"
+#include "softforce/base/input_error.h"
+#include "softforce/base/pending_file.h"
+#include "softforce/pipeline/register.h"
+#include "softforce/scene/place_rig.h"
+#include "softforce/scene/scene.h"
+
+namespace softforce::apps {
+namespace {
+
+using pipeline::RegisterFrom;
+
+struct RegisterArguments {
+  std::string scene;
+  std::string from, pairs, out;
+  bool in_place = false;
+  std::vector<std::string> cameras;
+  LiveArguments live;
+  pipeline::RegisterOptions options;
+};
+
+RegisterFrom ParseFrom(const RegisterArguments& arguments) {
+  if (arguments.from.empty()) {
+    return arguments.pairs.empty() ? RegisterFrom::kAnything : RegisterFrom::kPairs;
+  }
+  if (arguments.from == "fiducials") return RegisterFrom::kFiducials;
+  if (arguments.from == "markers") return RegisterFrom::kMarkers;
+  if (arguments.from == "pairs") return RegisterFrom::kPairs;
+  throw base::InputError(
+      "--from", fmt::format("got \"{}\", expected fiducials, markers or pairs", arguments.from),
+      "Write for example: --from markers");
+}
+
+// Where the rig file with the place goes; empty for nowhere.
+std::filesystem::path Target(const RegisterArguments& arguments) {
+  if (arguments.in_place && !arguments.out.empty()) {
+    throw base::InputError("--in-place", "got -o as well, expected one of them");
+  }
+  if (!arguments.in_place && arguments.out.empty()) return {};
+  const scene::Scene scene = scene::LoadScene(arguments.scene, scene::SceneFiles::kNone);
+  const std::filesystem::path target =
+      arguments.in_place ? scene.cameras.rig : std::filesystem::path(arguments.out);
+  std::error_code ignored;
+  for (const auto& input : {scene.file, scene.mesh.file, std::filesystem::path(arguments.pairs)}) {
+    if (!input.empty() && std::filesystem::equivalent(target, input, ignored)) {
+      throw base::InputError("-o " + target.string(), "would replace the input " + input.string(),
+                             "Give another name.");
+    }
+  }
+  for (const auto& [camera, source] : scene.cameras.sources) {
+    if (std::filesystem::equivalent(target, source, ignored)) {
+      throw base::InputError("-o " + target.string(), "would replace the input " + source,
+                             "Give another name.");
+    }
+  }
+  base::CheckCanWrite(std::filesystem::weakly_canonical(target, ignored));
+  return target;
+}
+
+int Register(RegisterArguments* arguments) {
+  pipeline::RegisterOptions& options = arguments->options;
+  options.from = ParseFrom(*arguments);
+  options.pairs = arguments->pairs;
+  options.sources = ParseCameraSources(arguments->cameras);
+  options.live = ParseLiveOptions(arguments->live);
+  options.stop = StopOnSignal();
+  const std::filesystem::path target = Target(*arguments);
+  const pipeline::RegisterReport report = pipeline::Register(arguments->scene, options);
+  fmt::print("{}", report.FullReport());
+  if (*options.stop) return 1;
+  if (!target.empty()) {
+    scene::WritePlacedRig(report.rig_file, report.pose.T_rig_robot,
+                          fmt::format("found {}\n{}", report.how, report.Spread()), target);
+    fmt::print("\nWritten: {}\n", target.string());
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command AddRegister(CLI::App* program) {
+  auto arguments = std::make_shared<RegisterArguments>();
+  CLI::App* app = program->add_subcommand(
+      "register", "Find where the rig of cameras stands in the robot's frame");
+  app->add_option("scene", arguments->scene, "Scene file (scene.yaml)")->required();
+  app->add_option("--from", arguments->from,
+                  "What to find it from: fiducials (tags on the base), markers (of the body, "
+                  "unloaded) or pairs (typed points); default: fiducials if the scene has any, "
+                  "else markers")
+      ->option_text("fiducials|markers|pairs");
+  app->add_option("--pairs", arguments->pairs,
+                  "File of points of the robot (mm) and where cameras see them (px): CSV with the "
+                  "columns x_mm,y_mm,z_mm,camera,u_px,v_px");
+  app->add_option("-o", arguments->out,
+                  "Rig file to write, with T_rig_robot and all else as in the scene's");
+  app->add_flag("--in-place", arguments->in_place, "Write T_rig_robot into the scene's rig file");
+  app->add_option("--frame", arguments->options.frame,
+                  "The first frame to look at; of markers the only one, with the body unloaded")
+      ->capture_default_str();
+  app->add_option("--registration-frames", arguments->options.fiducial_frames,
+                  "Frames searched for base fiducials")
+      ->capture_default_str();
+  app->add_option("--camera", arguments->cameras,
+                  "NAME=SOURCE: video file or live source of a camera instead of the scene's; may "
+                  "be repeated")
+      ->allow_extra_args(false);
+  AddLiveOptions(app, &arguments->live);
+  return {app, [arguments] { return Register(arguments.get()); }};
+}
+
+}  // namespace softforce::apps
