@@ -98,10 +98,10 @@ std::vector<Layout> SheetLayouts() {
   const Places ten = Join(six, {Under(45, 100), Under(155, 100), Under(85, 110), Under(130, 95)});
   const Places grid = Grid(all, None);
   const Places corner{{0.025, 0.025, 0.01},
-                      {0.025, 0.046, 0.01},
-                      {0.046, 0.025, 0.01},
-                      {0.046, 0.046, 0.01},
-                      {0.067, 0.025, 0.01}};
+                      {0.025, 0.055, 0.01},
+                      {0.055, 0.025, 0.01},
+                      {0.055, 0.055, 0.01},
+                      {0.085, 0.025, 0.01}};
   return {{"s1", kBody, "S0", two, grid},
           {"s2", kBody, "S0", four, grid},
           {"s3", kBody, "S0", six, grid},
@@ -136,7 +136,7 @@ std::vector<Layout> RobotLayouts() {
           {"r5", kBody, "R1", four, Join(feet, one_side)},
           {"r6", kBody, "R1", four, Join(feet, Outsides(30))},
           {"r7", kBody, "R1", four, Join(feet, Outsides(50))},
-          {"r8", kBody, "R1", four, Join(Outsides(9), {platform[0]})}};
+          {"r8", kBody, "R1", four, Join(feet, {platform[0], platform[1]})}};
 }
 
 }  // namespace softforce::validation
