@@ -114,7 +114,7 @@ std::string TextTables(const Study& study) {
         Name(meshes.body), meshes.given, meshes.inverse, meshes.truth);
   }
   for (const InexactCase& c : study.inexact) {
-    text += fmt::format("{}: Young's modulus as calibrated with the remedied model {:.2f} kPa\n",
+    text += fmt::format("{}: Young's modulus as identified with the remedied model {:.2f} kPa\n",
                         c.layout.name, 1e-3 * c.youngs_modulus);
   }
   return text;

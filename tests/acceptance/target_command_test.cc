@@ -15,7 +15,7 @@ TEST(TargetCommand, WritesAPdfAndSaysHowToUseIt) {
   const ProgramResult result =
       RunProgram("target chessboard:9x6,square=25mm --paper A3 -o " + file.string());
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, AllOf(HasSubstr("420 x 297 mm"), HasSubstr("Print it at 100 %"),
+  EXPECT_THAT(result.output, AllOf(HasSubstr("297 x 420 mm"), HasSubstr("Print it at 100 %"),
                                    HasSubstr("--board chessboard:9x6,square=25mm")));
   EXPECT_THAT(ReadText(file), StartsWith("%PDF"));
 }

@@ -19,8 +19,8 @@ inline constexpr std::array<double, 3> kTensionErrors{0.1, 0.15, 0.2};     // N,
 struct StudyOptions {
   std::filesystem::path meshes;      // folder of sheet.msh, robot.msh and their .geo
   std::vector<std::string> layouts;  // names; empty: all sixteen
-  // In how many frames the loads of the linear method grow: two seconds of the paper's sheet. In
-  // 16 the robot cannot follow.
+  // In how many frames the loads of the linear method grow: two seconds of the paper's sheet; and
+  // before them those of the robot's cables.
   int frames = 32;
   int threads = 2;
   bool show_progress = true;
@@ -49,7 +49,7 @@ struct InexactCase {
   ForceErrors modulus_remedied, tension_remedied;
   std::array<ForceErrors, 3> markers_remedied;
   std::array<ForceErrors, 3> markers_untared;  // robot: without the frame before the forces
-  double youngs_modulus = NAN;                 // Pa, as calibrated from the worst of kWrongModuli
+  double youngs_modulus = NAN;                 // Pa, as identified from the worst of kWrongModuli
 };
 
 struct Study {
