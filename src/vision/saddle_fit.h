@@ -30,8 +30,8 @@ struct SaddleFit {
 };
 
 struct SaddleOptions {
-  double max_reach = 0;       // m, half width of the window
-  double max_reach_px = 0;    // px, the same where that is less
+  double max_reach = 0;     // m, half width of the window
+  double max_reach_px = 0;  // px, the same where that is less
   double min_contrast = 0;  // grey levels
 };
 

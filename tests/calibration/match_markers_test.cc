@@ -59,9 +59,8 @@ Outcome Register(const std::vector<KnownDot>& dots, int seeds,
       ++outcome.right;
     } else {
       ++outcome.wrong;
-      std::cout << "seed " << seed << ": "
-                << 1e3 * ErrorAt(dots, match.pose.T_rig_robot, truth) << " mm off, "
-                << match.matched << " matched, rival " << match.rival << ", "
+      std::cout << "seed " << seed << ": " << 1e3 * ErrorAt(dots, match.pose.T_rig_robot, truth)
+                << " mm off, " << match.matched << " matched, rival " << match.rival << ", "
                 << match.pose.rms_px << " px, by guess " << match.by_guess << "\n";
     }
   }
