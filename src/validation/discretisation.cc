@@ -101,8 +101,9 @@ Discretisations MakeDiscretisations(BodyKind body, const std::filesystem::path& 
   options.size = body == BodyKind::kSheet ? kSheetSize : kRobotSize;
   const std::filesystem::path script = meshes / (std::string(Name(body)) + ".geo");
   const mesh::TetMesh finer = mesh::GenerateMesh(script, kMetresPerUnit, options).mesh;
+  const mesh::TetMesh truth = RefineAtEdges(body, mesh::Refine(given).mesh);
   return {mesh::RaiseOrder(given), mesh::RaiseOrder(RefineAtEdges(body, finer)),
-          mesh::RaiseOrder(mesh::Refine(given).mesh)};
+          mesh::RaiseOrder(truth)};
 }
 
 }  // namespace softforce::validation

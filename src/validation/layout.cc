@@ -16,13 +16,16 @@ Places Join(Places first, const Places& second) {
 // A place under the sheet, given in mm.
 Eigen::Vector3d Under(double x_mm, double y_mm) { return {1e-3 * x_mm, 1e-3 * y_mm, 0}; }
 
+Eigen::Vector3d OnSheet(double x_mm, double y_mm) { return {1e-3 * x_mm, 1e-3 * y_mm, 0.01}; }
+
 // Markers on the sheet where the columns and rows (mm) cross, but for those that `leave_out` names.
 template <typename LeaveOut>
-Places Grid(const std::vector<double>& columns_mm, LeaveOut leave_out) {
+Places Grid(const std::vector<double>& columns_mm, const std::vector<double>& rows_mm,
+            LeaveOut leave_out) {
   Places places;
   for (const double x : columns_mm) {
-    for (const double y : {25, 55, 85, 115, 145, 175}) {
-      if (!leave_out(x, y)) places.emplace_back(1e-3 * x, 1e-3 * y, 0.01);
+    for (const double y : rows_mm) {
+      if (!leave_out(x, y)) places.push_back(OnSheet(x, y));
     }
   }
   return places;
@@ -96,19 +99,17 @@ std::vector<Layout> SheetLayouts() {
   const Places four = Join(two, {Under(60, 60), Under(140, 140)});
   const Places six = Join(four, {Under(100, 150), Under(100, 50)});
   const Places ten = Join(six, {Under(45, 100), Under(155, 100), Under(85, 110), Under(130, 95)});
-  const Places grid = Grid(all, None);
-  const Places corner{{0.025, 0.025, 0.01},
-                      {0.025, 0.055, 0.01},
-                      {0.055, 0.025, 0.01},
-                      {0.055, 0.055, 0.01},
-                      {0.085, 0.025, 0.01}};
-  return {{"s1", kBody, "S0", two, grid},
+  const Places grid = Grid(all, all, None);
+  const std::vector<double> many{25, 50, 75, 100, 125, 150, 175};
+  const Places corner{OnSheet(25, 25), OnSheet(25, 46), OnSheet(46, 25), OnSheet(46, 46),
+                      OnSheet(67, 25)};
+  return {{"s1", kBody, "S0", two, Grid(many, many, None)},
           {"s2", kBody, "S0", four, grid},
           {"s3", kBody, "S0", six, grid},
           {"s4", kBody, "S0", ten, grid},
-          {"s5", kBody, "S1", four, Grid(all, Central)},
-          {"s6", kBody, "S1", four, Grid({25, 85, 115, 175}, None)},
-          {"s7", kBody, "S1", four, Grid({25, 55, 115, 145, 175}, None)},
+          {"s5", kBody, "S1", four, Grid(all, all, Central)},
+          {"s6", kBody, "S1", four, Grid({25, 85, 115, 175}, all, None)},
+          {"s7", kBody, "S1", four, Grid({25, 55, 115, 145, 175}, all, None)},
           {"s8", kBody, "S1", four, corner}};
 }
 
@@ -125,18 +126,21 @@ std::vector<Layout> RobotLayouts() {
   Places all = PlatformMarkers();
   for (const double z_mm : {10, 30, 50, 75}) all = Join(all, Outsides(z_mm));
   for (const double z_mm : {15, 30, 45, 70}) all = Join(all, Sides(z_mm));
+  Places more = all;
+  for (const double z_mm : {20, 40, 60, 85}) more = Join(more, Outsides(z_mm));
+  for (const double z_mm : {20, 35, 40, 50, 55, 60, 65}) more = Join(more, Sides(z_mm));
   const Places feet = Outsides(10);
   Places one_side;  // of each leg
   for (int leg = 0; leg < 4; ++leg) one_side.push_back(Sides(15)[2 * leg]);
   const Places platform = PlatformMarkers();
-  return {{"r1", kBody, "R0", two, all},
+  return {{"r1", kBody, "R0", two, more},
           {"r2", kBody, "R0", three, all},
           {"r3", kBody, "R0", eight, all},
           {"r4", kBody, "R0", fifteen, all},
           {"r5", kBody, "R1", four, Join(feet, one_side)},
           {"r6", kBody, "R1", four, Join(feet, Outsides(30))},
           {"r7", kBody, "R1", four, Join(feet, Outsides(50))},
-          {"r8", kBody, "R1", four, Join(feet, {platform[0], platform[1]})}};
+          {"r8", kBody, "R1", four, Join(Outsides(9), {platform[0]})}};
 }
 
 }  // namespace softforce::validation

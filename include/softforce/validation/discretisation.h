@@ -11,7 +11,9 @@ namespace softforce::validation {
 struct Discretisations {
   mesh::TetMesh given;    // the mesh of the project, about as many cells as the paper's
   mesh::TetMesh inverse;  // finer, cut by Gmsh on its own and refined where stress is singular
-  mesh::TetMesh truth;    // every cell of the given one cut into 8
+  // Every cell of the given one cut into 8, those where stress is singular once more: without that
+  // the markers beside the robot's feet would see its discretisation.
+  mesh::TetMesh truth;
 };
 
 // Reads sheet.msh or robot.msh, and cuts sheet.geo or robot.geo beside it anew. Throws InputError

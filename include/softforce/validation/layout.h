@@ -32,8 +32,8 @@ std::vector<AppliedForce> AppliedForces(BodyKind body);
 // A weight that the bodies are calibrated with: where no candidate is.
 AppliedForce KnownWeight(BodyKind body);
 
-// s1 … s4 watch S0 through the same markers and differ in candidates; s5 … s8 watch S1 with the
-// same candidates and differ in markers. Likewise r1 … r8.
+// s2 … s4 watch S0 through the same markers and differ in candidates, s1 with fewer candidates and
+// more markers; s5 … s8 watch S1 with the same candidates and differ in markers. Likewise r1 … r8.
 std::vector<Layout> SheetLayouts();
 std::vector<Layout> RobotLayouts();
 
