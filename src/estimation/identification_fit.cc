@@ -1,7 +1,5 @@
 #include "estimation/identification_fit.h"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -14,115 +12,6 @@ namespace softforce::estimation {
 namespace {
 
 constexpr int kTwist = 6;
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// Moves the body before Ceres evaluates any residual at a new point.
-class MoveBody : public ceres::EvaluationCallback {
- public:
-  MoveBody(ParametricBody* body, const IdentificationFit& fit, const Eigen::VectorXd& parameters)
-      : body_(body), fit_(fit), parameters_(parameters) {}
-
-  void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool /*new_evaluation_point*/) override {
-    reached_ = body_->MoveTo(fit_.Theta(parameters_));
-  }
-  bool reached() const { return reached_; }
-
- private:
-  ParametricBody* body_;
-  const IdentificationFit& fit_;
-  const Eigen::VectorXd& parameters_;  // Ceres keeps the point it evaluates here
-  bool reached_ = false;
-};
-
-// Ends the minimisation after the iteration in which it was asked to.
-class EndWhenAsked : public ceres::IterationCallback {
- public:
-  explicit EndWhenAsked(const std::atomic<bool>* asked) : asked_(asked) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return asked_ != nullptr && *asked_ ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::atomic<bool>* asked_;
-};
-
-class BlockCost : public ceres::CostFunction {
- public:
-  BlockCost(const IdentificationFit& fit, const IdentificationFit::Block& block,
-            const MoveBody& body)
-      : fit_(fit), block_(block), body_(body) {
-    set_num_residuals(static_cast<int>(block.whitening.rows()));
-    mutable_parameter_block_sizes()->push_back(fit.num_parameters());
-  }
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    if (!body_.reached()) return false;  // Ceres tries a shorter step
-    const int n = fit_.num_parameters();
-    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) =
-        fit_.Residuals(block_, Eigen::Map<const Eigen::VectorXd>(parameters[0], n));
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], num_residuals(), n) = fit_.Jacobian(block_);
-    }
-    return true;
-  }
-
- private:
-  const IdentificationFit& fit_;
-  const IdentificationFit::Block& block_;
-  const MoveBody& body_;
-};
-
-// Each parameter divided by its prior's standard deviation, in the parameters' own scale.
-class PriorCost : public ceres::CostFunction {
- public:
-  explicit PriorCost(Eigen::VectorXd weights) : weights_(std::move(weights)) {
-    set_num_residuals(static_cast<int>(weights_.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(weights_.size()));
-  }
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const Eigen::Index n = weights_.size();
-    Eigen::Map<Eigen::VectorXd>(residuals, n) =
-        weights_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(parameters[0], n));
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], n, n) = weights_.asDiagonal();
-    }
-    return true;
-  }
-
- private:
-  Eigen::VectorXd weights_;
-};
-
-// Ends when a step changes the cost, which is half of χ², by so little that it cannot matter: the
-// equilibria are not found more exactly than that.
-class NegligibleStep : public ceres::IterationCallback {
- public:
-  explicit NegligibleStep(double tolerance) : negligible_(0.5 * tolerance * tolerance) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    const bool there = summary.iteration > 0 && summary.step_is_valid &&
-                       std::abs(summary.cost_change) < negligible_;
-    return there ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  double negligible_;
-};
-
-// Weights of the priors, in the parameters' own scale; 0 where nothing was known.
-Eigen::VectorXd PriorWeights(const Eigen::VectorXd& guess, const Eigen::VectorXd& prior_sd,
-                             int num_parameters) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(num_parameters);
-  for (Eigen::Index p = 0; p < guess.size(); ++p) {
-    weights(p) = std::isfinite(prior_sd(p)) ? guess(p) / prior_sd(p) : 0;
-  }
-  return weights;
-}
 
 }  // namespace
 
@@ -271,58 +160,23 @@ double IdentificationFit::LossScale(const Block& block) const {
          std::sqrt(std::max(1.0, static_cast<double>(block.whitening.rows()) / 3));
 }
 
-IdentificationFit::Result IdentificationFit::Minimise(Eigen::VectorXd* parameters) {
-  MoveBody move(body_, *this, *parameters);
-  ceres::Problem::Options problem_options;
-  problem_options.evaluation_callback = &move;
-  ceres::Problem problem(problem_options);
-  for (const Block& block : blocks_) {
-    problem.AddResidualBlock(new BlockCost(*this, block, move),
-                             new ceres::HuberLoss(LossScale(block)), parameters->data());
+Eigen::VectorXd IdentificationFit::PriorWeights() const {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(num_parameters_);
+  for (Eigen::Index p = 0; p < guess_.size(); ++p) {
+    weights(p) = std::isfinite(prior_sd_(p)) ? guess_(p) / prior_sd_(p) : 0;
   }
-  problem.AddResidualBlock(new PriorCost(PriorWeights(guess_, prior_sd_, num_parameters_)), nullptr,
-                           parameters->data());
-  for (int p = 0; p < body_->num_unknowns(); ++p) {
-    if (!std::isfinite(body_->Lower(p))) continue;
-    problem.SetParameterLowerBound(parameters->data(), p, body_->Lower(p) / guess_(p));
-    problem.SetParameterUpperBound(parameters->data(), p, body_->Upper(p) / guess_(p));
-  }
-
-  ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = ceres::DENSE_QR;
-  // Gauss–Newton unless a step fails. Steps that go too far are refused before anything is solved.
-  solver_options.initial_trust_region_radius = 1e4;
-  solver_options.max_num_consecutive_invalid_steps = 100;
-  solver_options.max_num_iterations = options_.estimator.max_iterations;
-  NegligibleStep negligible_step(options_.tolerance);
-  solver_options.callbacks.push_back(&negligible_step);
-  EndWhenAsked end_when_asked(options_.stop);
-  solver_options.callbacks.push_back(&end_when_asked);
-  solver_options.function_tolerance = 1e-14;
-  solver_options.parameter_tolerance = 1e-12;
-  solver_options.gradient_tolerance = 1e-14;
-  solver_options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver_options, &problem, &summary);
-
-  Result result;
-  result.converged =
-      summary.IsSolutionUsable() && summary.termination_type != ceres::NO_CONVERGENCE;
-  result.iterations = static_cast<int>(summary.iterations.size());
-  return result;
+  return weights;
 }
 
 double IdentificationFit::ChiSquare(const Eigen::VectorXd& parameters) const {
-  double chi2 =
-      PriorWeights(guess_, prior_sd_, num_parameters_).cwiseProduct(parameters).squaredNorm();
+  double chi2 = PriorWeights().cwiseProduct(parameters).squaredNorm();
   for (const Block& block : blocks_) chi2 += Residuals(block, parameters).squaredNorm();
   return chi2;
 }
 
 Eigen::MatrixXd IdentificationFit::Information(const Eigen::VectorXd& parameters,
                                                bool with_loss) const {
-  Eigen::MatrixXd information =
-      PriorWeights(guess_, prior_sd_, num_parameters_).cwiseAbs2().asDiagonal();
+  Eigen::MatrixXd information = PriorWeights().cwiseAbs2().asDiagonal();
   for (const Block& block : blocks_) {
     const Eigen::MatrixXd J = Jacobian(block);
     // A marker that the loss holds back says less.

@@ -68,6 +68,8 @@ class IdentificationFit {
   Eigen::MatrixXd Jacobian(const Block& block) const;
 
  private:
+  // Weights of the priors, in the parameters' own scale; 0 where nothing was known.
+  Eigen::VectorXd PriorWeights() const;
   double LocalError(int state, int number) const;  // m, standard deviation
   double LossScale(const Block& block) const;
   // ∂(offset twist)/∂(all whitened offset parameters) of a state, 6×(6 + 6 states).
