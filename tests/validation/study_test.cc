@@ -20,6 +20,7 @@ StudyOptions Quiet() {
   StudyOptions options;
   options.meshes = kMeshes;
   options.show_progress = false;
+  options.frames = 16;
   return options;
 }
 
