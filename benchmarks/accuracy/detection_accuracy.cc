@@ -185,6 +185,7 @@ void Plate::Look(std::mt19937* random, double pixel_floor, Tally* tally) const {
   render::PictureOptions options;
   options.blur = setting_.blur;
   options.noise = setting_.noise;
+  options.rays = 12;  // so that the picture's noise is that of the sensor alone
   if (setting_.dark) std::swap(options.body, options.white);
   options.light = T_rig_plate.linear().transpose() * Eigen::Vector3d(0.2, -0.3, -1).normalized();
   std::vector<std::vector<std::optional<PixelObservation>>> seen;

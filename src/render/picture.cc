@@ -96,6 +96,7 @@ void PictureOptions::Check() const {
   };
   require(blur >= 0 && blur <= 10, "blur", "must lie between 0 and 10 px");
   require(noise >= 0 && noise <= 100, "noise", "must lie between 0 and 100 grey levels");
+  require(rays >= 1 && rays <= 16, "rays", "must lie between 1 and 16");
   require(contrast > 0 && contrast <= 10, "contrast", "must be above 0 and at most 10");
   require(std::abs(brightness) <= 255, "brightness", "must lie between -255 and 255 grey levels");
   require(light_gradient.cwiseAbs().sum() < 2, "light_gradient",
@@ -120,7 +121,7 @@ struct PictureMaker::State {
         world(world_in),
         options(options_in),
         view{&camera, T_camera_robot, {camera.width, camera.height}, 1},
-        blur(options.blur, kRays),
+        blur(options.blur, options.rays),
         rays(camera, blur.margin()),
         facets(world, view, options) {
     for (const Sticker& sticker : world.stickers) areas.emplace_back(sticker, world);
@@ -173,7 +174,7 @@ Picture PictureMaker::Take(const Eigen::Matrix3Xd& x, const std::vector<Rod>& ro
   for (size_t s = 0; s < count; ++s) {
     int rays = 0;
     for (const std::vector<int>& in_tile : seen) rays += in_tile[s];
-    const double area = state.areas[s].At(state.view, x) * kRays * kRays;
+    const double area = state.areas[s].At(state.view, x) * state.options.rays * state.options.rays;
     picture.visible_share.push_back(area > 0 ? std::min(1.0, rays / area) : 0);
   }
   return picture;

@@ -64,12 +64,13 @@ float RodDepth(const Eigen::Vector3f& d, const Eigen::Vector3f& begin, const Eig
 Tile::Tile(const cv::Rect& area, const RayTable& rays, const PictureWorld& world,
            const PictureOptions& options, const std::vector<Facet>& facets)
     : area_(area),
+      per_side_(options.rays),
       rays_(rays),
       world_(world),
       options_(options),
       facets_(facets),
-      stride_(area.width * kRays),
-      hits_(static_cast<size_t>(stride_) * area.height * kRays) {}
+      stride_(area.width * per_side_),
+      hits_(static_cast<size_t>(stride_) * area.height * per_side_) {}
 
 void Tile::AddFacet(int number) {
   const Facet& facet = facets_[number];
@@ -84,10 +85,10 @@ void Tile::AddFacet(int number) {
       if (!ray.ok()) continue;
       const PixelPlane pixel(plane, ray);
       if (!pixel.Near()) continue;
-      for (int j = 0; j < kRays; ++j) {
-        for (int i = 0; i < kRays; ++i) {
-          const Eigen::Vector4f at =
-              pixel.middle + RayOffset(i, j) * pixel.by_u + RayOffset(j, i) * pixel.by_v;
+      for (int j = 0; j < per_side_; ++j) {
+        for (int i = 0; i < per_side_; ++i) {
+          const Eigen::Vector4f at = pixel.middle + RayOffset(i, j, per_side_) * pixel.by_u +
+                                     RayOffset(j, i, per_side_) * pixel.by_v;
           Hit& hit = At(x, y, i, j);
           if (at.head<3>().minCoeff() < -PixelPlane::kRounding || at(3) <= hit.inverse_depth) {
             continue;
@@ -111,9 +112,9 @@ void Tile::AddRod(const Eigen::Vector3d& begin, const Eigen::Vector3d& end, doub
       if (!ray.ok()) continue;
       const float pixel_width = std::hypot(ray.x_u, ray.y_v) * (from + axis + from).norm();
       if (RodDepth({ray.x, ray.y, 1}, from, axis, radius + pixel_width) <= 0) continue;
-      for (int j = 0; j < kRays; ++j) {
-        for (int i = 0; i < kRays; ++i) {
-          const float u = RayOffset(i, j), v = RayOffset(j, i);
+      for (int j = 0; j < per_side_; ++j) {
+        for (int i = 0; i < per_side_; ++i) {
+          const float u = RayOffset(i, j, per_side_), v = RayOffset(j, i, per_side_);
           const Eigen::Vector3f d(ray.x + u * ray.x_u + v * ray.x_v,
                                   ray.y + u * ray.y_u + v * ray.y_v, 1);
           const float depth = RodDepth(d, from, axis, radius);
@@ -159,9 +160,10 @@ float Tile::Paint(const Hit& hit, int* sticker_seen) const {
 }
 
 cv::Mat1f Tile::Shade(const cv::Rect& core, std::vector<int>* seen) const {
-  cv::Mat1f grey(area_.height * kRays, stride_);
+  cv::Mat1f grey(area_.height * per_side_, stride_);
   for (int row = 0; row < grey.rows; ++row) {
-    const bool row_in_core = row / kRays + area_.y >= core.y && row / kRays + area_.y < core.br().y;
+    const bool row_in_core =
+        row / per_side_ + area_.y >= core.y && row / per_side_ + area_.y < core.br().y;
     float* out = grey[row];
     for (int column = 0; column < grey.cols; ++column) {
       const Hit& hit = hits_[static_cast<size_t>(row) * stride_ + column];
@@ -173,7 +175,7 @@ cv::Mat1f Tile::Shade(const cv::Rect& core, std::vector<int>* seen) const {
         int sticker = -1;
         const float level = Paint(hit, &sticker);
         out[column] = level < 0 ? static_cast<float>(options_.white) : level;
-        const int x = column / kRays + area_.x;
+        const int x = column / per_side_ + area_.x;
         if (sticker >= 0 && row_in_core && x >= core.x && x < core.br().x) ++(*seen)[sticker];
       }
     }

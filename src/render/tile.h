@@ -8,13 +8,12 @@
 
 namespace softforce::render {
 
-// Each pixel is looked at along kRays × kRays rays. Those of a row of cells are shifted against
+// Each pixel is looked at along rays × rays rays. Those of a row of cells are shifted against
 // those of the next, so that no two share a column or a row of the picture: an edge along the
 // pixels is seen as finely as any other.
-inline constexpr int kRays = 4;
-
-inline float RayOffset(int cell, int other_cell) {  // px from the pixel's centre
-  return (static_cast<float>(cell) + (static_cast<float>(other_cell) + 0.5f) / kRays) / kRays -
+inline float RayOffset(int cell, int other_cell, int rays) {  // px from the pixel's centre
+  const auto count = static_cast<float>(rays);
+  return (static_cast<float>(cell) + (static_cast<float>(other_cell) + 0.5f) / count) / count -
          0.5f;
 }
 
@@ -30,7 +29,7 @@ class Tile {
   void AddRod(const Eigen::Vector3d& begin, const Eigen::Vector3d& end, double diameter,
               double grey);  // m, camera frame
 
-  // Grey levels along all rays, kRays rows and columns per pixel. Adds to `seen`, per sticker on
+  // Grey levels along all rays, so many rows and columns per pixel. Adds to `seen`, per sticker on
   // the body, how many rays of the pixels in `core` end in its disc or square.
   cv::Mat1f Shade(const cv::Rect& core, std::vector<int>* seen) const;
 
@@ -42,11 +41,12 @@ class Tile {
   };
 
   Hit& At(int x, int y, int i, int j) {  // pixel, cell
-    return hits_[((y - area_.y) * kRays + j) * stride_ + (x - area_.x) * kRays + i];
+    return hits_[((y - area_.y) * per_side_ + j) * stride_ + (x - area_.x) * per_side_ + i];
   }
   float Paint(const Hit& hit, int* sticker_seen) const;
 
   cv::Rect area_;
+  int per_side_;  // rays of a pixel
   const RayTable& rays_;
   const PictureWorld& world_;
   const PictureOptions& options_;

@@ -39,8 +39,11 @@ struct PictureWorld {
 
 struct PictureOptions {
   // The lens and the sensor.
-  double blur = 0.7;      // px, standard deviation
-  double noise = 1.7;     // grey levels, standard deviation
+  double blur = 0.7;   // px, standard deviation
+  double noise = 1.7;  // grey levels, standard deviation
+  // Along rows and columns, a square number per pixel. With 4, edges carry some 3 grey levels of
+  // noise of their own.
+  int rays = 4;
   double contrast = 1;    // grey levels are multiplied by it, then
   double brightness = 0;  // this is added
   // How much lighter the right edge is than the left, and the lower than the upper, as a share of
@@ -60,10 +63,10 @@ struct Picture {
   std::vector<double> visible_share;
 };
 
-// Takes pictures of a deforming body as one camera sees it. Every pixel is looked at along 16 rays,
-// which are exact for the lens; the nearest surface counts. Curved triangles are cut into flat
-// facets that are at most kFlatness off. What is on the surface is a matter of the place at rest,
-// so that it stretches and foreshortens with the body. The same input gives the same picture.
+// Takes pictures of a deforming body as one camera sees it. Every pixel is looked at along several
+// rays, which are exact for the lens; the nearest surface counts. Curved triangles are cut into
+// flat facets that are at most kFlatness off. What is on the surface is a matter of the place at
+// rest, so that it stretches and foreshortens with the body. The same input gives the same picture.
 class PictureMaker {
  public:
   static constexpr double kFlatness = 1e-5;  // m
