@@ -27,6 +27,7 @@ struct CalibrateArguments {
   std::string model = "auto";
   LiveArguments live;
   pipeline::CalibrateOptions options;
+  pipeline::GuideOptions guide;
 };
 
 // A further file of the rig in another tool's format.
@@ -116,8 +117,9 @@ report::CalibrationRecord CalibrateLive(const CalibrateArguments& arguments) {
     throw base::InputError(arguments.inputs[0], "is a file, but there are live cameras",
                            "Give either live cameras or files.");
   }
+  arguments.guide.Check();
   vision::LiveCameras source(cameras, ParseLiveOptions(arguments.live));
-  return pipeline::CalibrateLive(source, names, arguments.options);
+  return pipeline::CalibrateLive(source, names, arguments.options, arguments.guide);
 }
 
 void WriteText(const std::string& path, const std::string& text) {
@@ -189,6 +191,13 @@ Command AddCalibrate(CLI::App* program) {
                   "FORMAT=PATH: write the rig for another tool too: opencv=FILE, kalibr=FILE, "
                   "ros=FOLDER; may be repeated")
       ->allow_extra_args(false);
+  app->add_option("--max-uncertainty", arguments->guide.max_uncertainty_px,
+                  "Live: collect views until the projection is this certain, px (standard "
+                  "deviation at the working distance, over nine tenths of each picture)")
+      ->capture_default_str();
+  app->add_option("--max-views", arguments->guide.max_views,
+                  "Live: collect no more views than these for that")
+      ->capture_default_str();
   AddLiveOptions(app, &arguments->live);
   return {app, [arguments] { return Calibrate(arguments.get()); }};
 }

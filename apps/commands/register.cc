@@ -49,6 +49,7 @@ std::filesystem::path Target(const RegisterArguments& arguments) {
   const std::filesystem::path target =
       arguments.in_place ? scene.cameras.rig : std::filesystem::path(arguments.out);
   std::error_code ignored;
+  scene::CheckCanHoldPlace(scene.cameras.rig, target);
   for (const auto& input : {scene.file, scene.mesh.file, std::filesystem::path(arguments.pairs)}) {
     if (!input.empty() && std::filesystem::equivalent(target, input, ignored)) {
       throw base::InputError("-o " + target.string(), "would replace the input " + input.string(),
@@ -77,8 +78,10 @@ int Register(RegisterArguments* arguments) {
   fmt::print("{}", report.FullReport());
   if (*options.stop) return 1;
   if (!target.empty()) {
-    scene::WritePlacedRig(report.rig_file, report.pose.T_rig_robot,
-                          fmt::format("found {}\n{}", report.how, report.Spread()), target);
+    scene::WritePlacedRig(report.rig_file,
+                          {report.pose.T_rig_robot, report.pose.covariance,
+                           fmt::format("found {}\n{}", report.how, report.Spread())},
+                          target);
     fmt::print("\nWritten: {}\n", target.string());
   }
   return 0;

@@ -13,6 +13,9 @@ namespace {
 
 using Status = Calibration::Status;
 
+constexpr int kMostIterations = 200;
+constexpr double kLittleTilt = 15 * M_PI / 180;  // rad
+
 const char* const kTiltTheBoard =
     "Take views with the board tilted by 30 to 45 degrees, to the left, to the right, up and down, "
     "near and far, and in all parts of the picture.";
@@ -52,8 +55,8 @@ bool ViewsSuffice(const CalibrationInput& input, const CalibrationOptions& optio
     groups += (groups.empty() ? "{" : " and {") + names + "}";
   }
   Fail(Status::kNotConnected,
-       "no view shows the board to cameras of both groups" + when + ": " + groups,
-       "Hold the board where cameras of both groups see it at the same time, or calibrate the "
+       "no view shows the board to cameras of different groups" + when + ": " + groups,
+       "Hold the board where cameras of two groups see it at the same time, or calibrate the "
        "groups apart. Pictures of one moment must be paired as one view.",
        calibration);
   return false;
@@ -98,9 +101,12 @@ double RobustNoisePx(const BoardShape& board, const Estimate& estimate,
 }
 
 // What cannot be told from the views, for a person; empty if all can.
-std::string Undetermined(const CalibrationInput& input, const CalibrationOptions& options,
-                         const Estimate& estimate, const NormalEquations& equations,
-                         double noise_factor) {
+std::string WhatIsOpen(const CalibrationInput& input, const CalibrationOptions& options,
+                       const Estimate& estimate, const NormalEquations& equations,
+                       double noise_factor) {
+  if (!equations.determined() || !std::isfinite(noise_factor)) {
+    return "the views do not determine the cameras";
+  }
   std::string text;
   for (int c = 0; c < static_cast<int>(input.cameras.size()); ++c) {
     const Eigen::VectorXd lens = LensVector(estimate.lenses[c], estimate.fits[c]);
@@ -114,6 +120,53 @@ std::string Undetermined(const CalibrationInput& input, const CalibrationOptions
     }
   }
   return text;
+}
+
+// How straight the board faced all cameras, if that is why; a similar picture in all views leaves
+// focal length and distance to trade, whatever they are taken to be.
+std::string TiltText(const std::vector<Sighting>& sightings, const Estimate& estimate) {
+  double widest = 0;  // rad
+  for (const Sighting& sighting : sightings) {
+    const Eigen::Isometry3d T_camera_board =
+        estimate.T_camera_rig[sighting.camera] * estimate.T_rig_board[sighting.view];
+    const double cosine = std::min(1.0, std::abs(T_camera_board.linear()(2, 2)));
+    widest = std::max(widest, std::acos(cosine));
+  }
+  if (widest > kLittleTilt) return "";
+  return fmt::format(": the board was never tilted by more than {:.0f} degrees against a picture",
+                     widest * 180 / M_PI);
+}
+
+// The adjustment of all at once, from the start to where outliers can be told, with the floor of
+// the noise set. Whether the board is that in the pictures.
+bool AdjustTogether(const CalibrationInput& input, const BoardShape& board,
+                    const CalibrationOptions& options, Solved* solved) {
+  auto& [calibration, sightings, estimate] = *solved;
+  Tell(options, "all cameras together");
+  AdjustOptions adjust;
+  adjust.stop = options.stop;
+  adjust.free_distortion = 2;
+  adjust.free_warp = false;
+  AdjustRobustly(board, sightings, adjust, &estimate);
+  adjust.free_distortion = 8;
+  adjust.free_warp = true;
+  adjust.max_iterations = kMostIterations;
+  AdjustRobustly(board, sightings, adjust, &estimate);
+  if (Stopped(options, &calibration)) return false;
+  const double noise_px = RobustNoisePx(board, estimate, sightings);
+  if (!(noise_px < MaxNoise(input))) {
+    Fail(Status::kBoardMismatch,
+         fmt::format("half of the points are more than {:.1f} px from where the board has them",
+                     1.18 * noise_px),
+         "Check that the board given is the one in the pictures (kind, counts, proportions), that "
+         "the pictures of a view belong to one moment, and that the lens model suits the lens.",
+         &calibration);
+    return false;
+  }
+  calibration.floor_px = RobustFloor(board, estimate, sightings);
+  SetFloor(calibration.floor_px, &sightings);
+  AdjustRobustly(board, sightings, adjust, &estimate);
+  return true;
 }
 
 }  // namespace
@@ -162,31 +215,11 @@ Solved Solve(const CalibrationInput& input, const BoardShape& board,
     return solved;
   }
 
-  Tell(options, "all cameras together");
+  if (!AdjustTogether(input, board, options, &solved)) return solved;
+
   AdjustOptions adjust;
   adjust.stop = options.stop;
-  adjust.free_distortion = 2;
-  adjust.free_warp = false;
-  AdjustRobustly(board, sightings, adjust, &estimate);
-  adjust.free_distortion = 8;
-  adjust.free_warp = true;
-  adjust.max_iterations = 200;
-  AdjustRobustly(board, sightings, adjust, &estimate);
-  if (Stopped(options, &calibration)) return solved;
-  const double noise_px = RobustNoisePx(board, estimate, sightings);
-  if (!(noise_px < MaxNoise(input))) {
-    Fail(Status::kBoardMismatch,
-         fmt::format("half of the points are more than {:.1f} px from where the board has them",
-                     1.18 * noise_px),
-         "Check that the board given is the one in the pictures (kind, counts, proportions), that "
-         "the pictures of a view belong to one moment, and that the lens model suits the lens.",
-         &calibration);
-    return solved;
-  }
-
-  calibration.floor_px = RobustFloor(board, estimate, sightings);
-  SetFloor(calibration.floor_px, &sightings);
-  AdjustRobustly(board, sightings, adjust, &estimate);
+  adjust.max_iterations = kMostIterations;
   const Fit fit =
       FitWithoutOutliers(board, options.outlier_probability, adjust, &sightings, &estimate);
   if (Stopped(options, &calibration)) return solved;
@@ -195,24 +228,16 @@ Solved Solve(const CalibrationInput& input, const BoardShape& board,
     return solved;
   }
   const NormalEquations equations(board, sightings, estimate);
-  if (!equations.determined() || !std::isfinite(fit.noise_factor)) {
-    Fail(Status::kUndetermined, "the views do not determine the cameras", kTiltTheBoard,
-         &calibration);
-    return solved;
-  }
-  const std::string undetermined =
-      Undetermined(input, options, estimate, equations, fit.noise_factor);
-  if (!undetermined.empty()) {
-    Fail(Status::kUndetermined, undetermined, kTiltTheBoard, &calibration);
-    return solved;
-  }
-  if (!fit.adjustment.usable || !fit.adjustment.converged) {
+  const std::string open = WhatIsOpen(input, options, estimate, equations, fit.noise_factor);
+  if (!open.empty()) {
+    Fail(Status::kUndetermined, open + TiltText(sightings, estimate), kTiltTheBoard, &calibration);
+  } else if (!fit.adjustment.usable || !fit.adjustment.converged) {
     Fail(Status::kNotConverged, "the bundle adjustment did not come to an end", kTiltTheBoard,
          &calibration);
-    return solved;
+  } else {
+    calibration.status = Status::kOk;
+    Conclude(input, board, options, sightings, fit, equations, estimate, &calibration);
   }
-  calibration.status = Status::kOk;
-  Conclude(input, board, options, sightings, fit, equations, estimate, &calibration);
   return solved;
 }
 

@@ -78,16 +78,6 @@ WantedPose Want(const Seen& seen, int c, bool alone, const GuideOptions& options
   return pose;
 }
 
-std::string RegionText(const WantedPose& pose, const GuideOptions& options) {
-  const auto word = [](int place, int parts, const char* first, const char* last) {
-    return std::string(3 * place < parts ? first : 3 * (place + 1) > 2 * parts ? last : "");
-  };
-  const std::string vertical = word(pose.row, options.rows, "top", "bottom");
-  const std::string horizontal = word(pose.column, options.columns, "left", "right");
-  if (vertical.empty() && horizontal.empty()) return "middle";
-  return vertical + (vertical.empty() || horizontal.empty() ? "" : " ") + horizontal;
-}
-
 const char* FacingText(Facing facing) {
   switch (facing) {
     case Facing::kAny:
@@ -114,9 +104,24 @@ void GuideOptions::Check() const {
   check(rows >= 1, "rows", rows);
   check(views_per_tilt >= 1, "views_per_tilt", views_per_tilt);
   check(min_views >= 1, "min_views", min_views);
+  check(max_views >= 1, "--max-views", max_views);
+  if (!(max_uncertainty_px > 0)) {
+    throw base::InputError("--max-uncertainty",
+                           fmt::format("got {}, expected more than 0 px", max_uncertainty_px));
+  }
   if (!(tilt > 0 && tilt < 1.5)) {
     throw base::InputError("tilt", fmt::format("got {}, expected 0 to 1.5 rad", tilt));
   }
+}
+
+std::string RegionText(const WantedPose& pose, const GuideOptions& options) {
+  const auto word = [](int place, int parts, const char* first, const char* last) {
+    return std::string(3 * place < parts ? first : 3 * (place + 1) > 2 * parts ? last : "");
+  };
+  const std::string vertical = word(pose.row, options.rows, "top", "bottom");
+  const std::string horizontal = word(pose.column, options.columns, "left", "right");
+  if (vertical.empty() && horizontal.empty()) return "middle";
+  return vertical + (vertical.empty() || horizontal.empty() ? "" : " ") + horizontal;
 }
 
 std::string Guidance::Text(const calibration::CalibrationInput& input,

@@ -38,6 +38,9 @@ class Job {
       default:
         ByMarkers();
     }
+    // To the last bit, for the file.
+    geometry::Matrix6d& covariance = report_.pose.covariance;
+    covariance = (0.5 * (covariance + covariance.transpose())).eval();
     Compare();
     return report_;
   }
@@ -140,9 +143,7 @@ class Job {
       report_.body_centre += marker.position / static_cast<double>(scene_.markers.points.size());
     }
     const Eigen::Isometry3d& T = report_.pose.T_rig_robot;
-    Eigen::Matrix<double, 3, 6> J;
-    J << Eigen::Matrix3d::Identity(), -geometry::Skew(T * report_.body_centre);
-    report_.body_covariance = J * report_.pose.covariance * J.transpose();
+    report_.body_covariance = PointCovariance(T, report_.pose.covariance, report_.body_centre);
     if (!rig_.T_rig_robot) return;
     const Eigen::Isometry3d& before = *rig_.T_rig_robot;
     report_.moved = (T * report_.body_centre - before * report_.body_centre).norm();

@@ -96,15 +96,24 @@ ShowFirstFrames FirstFramesOf(vision::Recording* recording, int frames) {
   };
 }
 
+Eigen::Matrix3d PointCovariance(const Eigen::Isometry3d& T_rig_robot,
+                                const geometry::Matrix6d& covariance,
+                                const Eigen::Vector3d& p_robot) {
+  Eigen::Matrix<double, 3, 6> J;
+  J << Eigen::Matrix3d::Identity(), -geometry::Skew(T_rig_robot * p_robot);
+  return J * covariance * J.transpose();
+}
+
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
                  const ShowFirstFrames& show) {
   if (scene.cameras.fiducials.empty()) {
-    if (rig.T_rig_robot) return {*rig.T_rig_robot, geometry::Matrix6d::Zero(), std::nullopt, {}};
+    if (rig.T_rig_robot) return {*rig.T_rig_robot, rig.T_rig_robot_covariance, std::nullopt, {}};
     throw base::InputError(
         scene.file.string() + ": cameras",
         "nothing says where the cameras stand: there are no fiducials here and no T_rig_robot in " +
             scene.cameras.rig.string(),
-        "Fix AprilTags to the robot's base and list their corners under 'fiducials'.");
+        "Find it with softforce register, or fix AprilTags to the robot's base and list their "
+        "corners under 'fiducials'.");
   }
   calibration::FiducialRegistration registration(rig, scene.cameras.fiducials);
   int frames = 0;

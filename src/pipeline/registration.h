@@ -53,4 +53,9 @@ struct Standing {
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
                  const ShowFirstFrames& show);
 
+// m², rig's axes: of a point that is fixed to the robot, by how sure it is where the rig stands.
+Eigen::Matrix3d PointCovariance(const Eigen::Isometry3d& T_rig_robot,
+                                const geometry::Matrix6d& covariance,
+                                const Eigen::Vector3d& p_robot);
+
 }  // namespace softforce::pipeline

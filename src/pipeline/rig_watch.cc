@@ -286,7 +286,7 @@ void RigWatch::LookAtMarkers(int frame, const std::vector<MarkerObservation>& ob
   }
   const double sd =
       std::sqrt(kMarkerFloor * kMarkerFloor + std::pow(common_model_error * displacement, 2) +
-                standing_.covariance.topLeftCorner<3, 3>().trace() / 3);
+                PointCovariance(standing_.T_rig_robot, standing_.covariance, centre).trace() / 3);
   // Off alike: a rigid motion takes most of the misfit away.
   const bool off = std::sqrt(before) > kMarkerSds * sd && after < before / 4;
   markers_off_ = off ? markers_off_ + 1 : 0;

@@ -114,9 +114,8 @@ void RunJob::ProcessFrames(RunOutputs* outputs) {
 }
 
 void RunJob::WriteSummaryFile() {
-  RunFacts facts{scene_,   options_,       tally_,
-                 world_,   correction_,    standing_.from_fiducials,
-                 index_w_, feed_.Inputs(), watch_.events()};
+  RunFacts facts{scene_,    options_, tally_,         world_,         correction_,
+                 standing_, index_w_, feed_.Inputs(), watch_.events()};
   WriteSummary(facts, options_.out / "summary.json");
 }
 

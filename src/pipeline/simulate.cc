@@ -168,6 +168,7 @@ void SimulationJob::Commit() {
     // With fiducials, where the rig stands is left to be found.
     camera::Rig rig = rig_;
     rig.T_rig_robot.reset();
+    rig.T_rig_robot_covariance.setZero();  // it is known
     if (scene_.cameras.fiducials.empty()) rig.T_rig_robot = T_rig_robot_;
     files.rig = "rig.yaml";
     scene::SaveRig(rig, options_.out / files.rig);

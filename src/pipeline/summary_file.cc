@@ -26,13 +26,26 @@ Json Matrix(const Eigen::MatrixXd& m) {
   return rows;
 }
 
-Json Registration(const vision::RigPose& pose) {
-  const Eigen::VectorXd sd = pose.covariance.diagonal().cwiseSqrt();
-  return {{"T_rig_robot", Matrix(pose.T_rig_robot.matrix())},
-          {"points", pose.num_points},
-          {"reprojection_rms_px", pose.rms_px},
+// "from": what told it.
+Json Place(const char* from, const Eigen::Isometry3d& T_rig_robot,
+           const geometry::Matrix6d& covariance) {
+  const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
+  return {{"from", from},
+          {"T_rig_robot", Matrix(T_rig_robot.matrix())},
           {"sd_translation_mm", {1e3 * sd(0), 1e3 * sd(1), 1e3 * sd(2)}},
           {"sd_rotation_mrad", {1e3 * sd(3), 1e3 * sd(4), 1e3 * sd(5)}}};
+}
+
+Json Registration(const vision::RigPose& pose) {
+  Json json = Place("fiducials", pose.T_rig_robot, pose.covariance);
+  json["points"] = pose.num_points;
+  json["reprojection_rms_px"] = pose.rms_px;
+  return json;
+}
+
+Json Registration(const Standing& standing) {
+  if (standing.from_fiducials) return Registration(*standing.from_fiducials);
+  return Place("rig_file", standing.T_rig_robot, standing.covariance);
 }
 
 Json Event(const RigEvent& event) {
@@ -97,7 +110,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
                                {"youngs_modulus_factor", correction.modulus_factor},
                                {"model_error_factor", correction.model_error_factor}};
   }
-  if (facts.registration) json["registration"] = Registration(*facts.registration);
+  json["registration"] = Registration(facts.standing);
 
   for (const RigEvent& event : facts.rig_events) json["rig_events"].push_back(Event(event));
 

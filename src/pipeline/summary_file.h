@@ -6,7 +6,6 @@
 #include "pipeline/rig_watch.h"
 #include "pipeline/run_tally.h"
 #include "softforce/pipeline/run.h"
-#include "softforce/vision/rig_pose.h"
 
 namespace softforce::pipeline {
 
@@ -17,8 +16,8 @@ struct RunFacts {
   const RunTally& tally;
   const World& world;
   const std::optional<MeshCorrection>& correction;
-  std::optional<vision::RigPose> registration;
-  double index_w = NAN;  // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
+  const Standing& standing;  // of the rig at the beginning
+  double index_w = NAN;      // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
   std::vector<std::filesystem::path> inputs;
   std::vector<RigEvent> rig_events;
 };

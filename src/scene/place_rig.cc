@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
+#include <array>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
+#include "scene/rig_formats.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
 #include "softforce/scene/rig_file.h"
@@ -16,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kKey[] = "T_rig_robot:";
+// All that a rig file says about its place.
+constexpr std::array<const char*, 2> kKeys = {"T_rig_robot:", "T_rig_robot_covariance:"};
 
 std::vector<std::string> LinesOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -32,24 +34,20 @@ bool GoesOn(const std::string& line) {
   return first == ' ' || first == '\t' || first == '-' || first == '[' || first == ']';
 }
 
-std::string Block(const Eigen::Isometry3d& T, const std::string& comment) {
-  std::string block = std::string(kKey) + "  # metres\n";
-  std::istringstream lines(comment);
-  for (std::string line; std::getline(lines, line);) block += "  # " + line + "\n";
-  for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector4d row = T.matrix().row(i);
-    block += fmt::format("  - [{}]\n", fmt::join(row, ", "));
-  }
-  return block;
+bool StartsPlace(const std::string& line) {
+  return std::any_of(kKeys.begin(), kKeys.end(),
+                     [&](const char* key) { return line.rfind(key, 0) == 0; });
 }
 
+// The lines with `block` where the first of the keys stood, or at the end.
 std::string Placed(const std::vector<std::string>& lines, const std::string& block) {
   std::string text;
   bool inside = false, placed = false;
   for (const std::string& line : lines) {
-    if (line.rfind(kKey, 0) == 0 && !placed) {
-      inside = placed = true;
-      text += block;
+    if (StartsPlace(line)) {
+      inside = true;
+      if (!placed) text += block;
+      placed = true;
       continue;
     }
     inside = inside && GoesOn(line);
@@ -58,13 +56,6 @@ std::string Placed(const std::vector<std::string>& lines, const std::string& blo
   if (placed) return text;
   if (!text.empty() && text.back() != '\n') text += '\n';
   return text + block;
-}
-
-bool IsOurs(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) {
-    if (line.rfind("softforce:", 0) == 0) return true;
-  }
-  return false;
 }
 
 bool SameCameras(const camera::Rig& a, const camera::Rig& b) {
@@ -76,6 +67,18 @@ bool SameCameras(const camera::Rig& a, const camera::Rig& b) {
     }
   }
   return true;
+}
+
+bool Stands(const camera::Rig& rig, const RigPlace& place) {
+  return rig.T_rig_robot && rig.T_rig_robot->isApprox(place.T_rig_robot, 1e-12) &&
+         (rig.T_rig_robot_covariance - place.covariance).isZero(0);
+}
+
+// Where a link leads to: that file is replaced, and the link stays.
+fs::path LedTo(const fs::path& file) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(file, error);
+  return error ? file : canonical;
 }
 
 // Written to a temporary file beside `to`.
@@ -91,27 +94,33 @@ void WriteText(const std::string& text, const fs::path& temporary, const fs::pat
 
 }  // namespace
 
-void WritePlacedRig(const fs::path& from, const Eigen::Isometry3d& T_rig_robot,
-                    const std::string& comment, const fs::path& to) {
+void CheckCanHoldPlace(const fs::path& from, const fs::path& to) {
+  if (FormatOfRig(from) == RigFormat::kSoftforce || LedTo(from) != LedTo(to)) return;
+  throw base::InputError(
+      to.string(),
+      fmt::format("is a file of {}, which has no place for T_rig_robot, expected a rig.yaml",
+                  NameOf(FormatOfRig(from))),
+      "Write another file with -o rig.yaml, and name that one in the scene.");
+}
+
+void WritePlacedRig(const fs::path& from, const RigPlace& place, const fs::path& to) {
   const camera::Rig before = LoadRig(from);
-  const std::vector<std::string> lines = LinesOf(from);
-  // Where a link leads to: that file is replaced, and the link stays.
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(to, error);
-  const fs::path target = error ? to : canonical;
-  if (!IsOurs(lines)) {  // a rig of another program, which has no such key
+  const fs::path target = LedTo(to);
+  if (FormatOfRig(from) != RigFormat::kSoftforce) {
+    CheckCanHoldPlace(from, to);
     camera::Rig placed = before;
-    placed.T_rig_robot = T_rig_robot;
+    placed.T_rig_robot = place.T_rig_robot;
+    placed.T_rig_robot_covariance = place.covariance;
     SaveRig(placed, target);
     return;
   }
   base::PendingFile pending(target);
-  WriteText(Placed(lines, Block(T_rig_robot, comment)), pending.temporary(), to);
+  const std::string block = PlaceText(place.T_rig_robot, place.covariance, place.comment);
+  WriteText(Placed(LinesOf(from), block), pending.temporary(), to);
   bool good = false;
   try {
     const camera::Rig after = LoadRig(pending.temporary());
-    good = SameCameras(before, after) && after.T_rig_robot &&
-           after.T_rig_robot->isApprox(T_rig_robot, 1e-12);
+    good = SameCameras(before, after) && Stands(after, place);
   } catch (const base::InputError&) {  // told below, in terms of the file that is there
   }
   if (!good) {
@@ -119,8 +128,9 @@ void WritePlacedRig(const fs::path& from, const Eigen::Isometry3d& T_rig_robot,
                            "Write it at the start of a line, as \"T_rig_robot:\" and four rows "
                            "below, or leave it out.");
   }
-  if (fs::exists(target, error)) {
-    fs::permissions(pending.temporary(), fs::status(target, error).permissions(), error);
+  std::error_code ignored;
+  if (fs::exists(target, ignored)) {
+    fs::permissions(pending.temporary(), fs::status(target, ignored).permissions(), ignored);
   }
   pending.Commit();
 }

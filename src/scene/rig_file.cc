@@ -35,20 +35,6 @@ RigFormat FormatOf(const YamlValue& file) {
             "(ROS) or \"M1\" or \"cameraMatrix\" (OpenCV)");
 }
 
-std::string NameOf(RigFormat format) {
-  switch (format) {
-    case RigFormat::kSoftforce:
-      return "softforce";
-    case RigFormat::kOpenCv:
-      return "OpenCV";
-    case RigFormat::kKalibr:
-      return "Kalibr";
-    case RigFormat::kRos:
-      return "ROS";
-  }
-  return "";
-}
-
 // One format for all; several files only where a rig has several.
 RigFormat CommonFormat(const std::vector<YamlValue>& values) {
   const RigFormat format = FormatOf(values[0]);
@@ -94,6 +80,22 @@ void SaveRosRig(const camera::Rig& rig, const fs::path& folder) {
 
 }  // namespace
 
+std::string NameOf(RigFormat format) {
+  switch (format) {
+    case RigFormat::kSoftforce:
+      return "softforce";
+    case RigFormat::kOpenCv:
+      return "OpenCV";
+    case RigFormat::kKalibr:
+      return "Kalibr";
+    case RigFormat::kRos:
+      return "ROS";
+  }
+  return "";
+}
+
+RigFormat FormatOfRig(const fs::path& file) { return FormatOf(YamlValue::FromFile(file)); }
+
 camera::Rig LoadRig(const fs::path& file) { return LoadRig(std::vector<fs::path>{file}, {}); }
 
 camera::Rig LoadRig(const std::vector<fs::path>& files, const RigReadOptions& options) {
@@ -115,7 +117,7 @@ camera::Rig LoadRig(const std::vector<fs::path>& files, const RigReadOptions& op
 
 std::optional<RigStatistics> LoadRigStatistics(const fs::path& file) {
   std::optional<RigStatistics> statistics;
-  if (FormatOf(YamlValue::FromFile(file)) == RigFormat::kSoftforce) {
+  if (FormatOfRig(file) == RigFormat::kSoftforce) {
     ReadSoftforceRig(file, &statistics);
   }
   return statistics;

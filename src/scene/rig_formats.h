@@ -17,6 +17,7 @@ namespace softforce::scene {
 camera::Rig ReadSoftforceRig(const std::filesystem::path& file,
                              std::optional<RigStatistics>* statistics = nullptr);
 RigStatistics ReadStatistics(YamlMap& map);
+geometry::Matrix6d ReadPlaceCovariance(const YamlValue& value);
 camera::Rig ReadOpenCvRig(const std::vector<YamlValue>& files, const RigReadOptions& options);
 camera::Rig ReadKalibrRig(const YamlValue& file);
 camera::Rig ReadRosRig(const std::vector<YamlValue>& files);
@@ -24,6 +25,9 @@ camera::Rig ReadRosRig(const std::vector<YamlValue>& files);
 // The writers: the text of a file. `where` is its name, for messages.
 std::string SoftforceText(const camera::Rig& rig, const std::optional<RigStatistics>& statistics);
 std::string StatisticsText(const RigStatistics& statistics);
+// T_rig_robot and, unless it is zero, its covariance; `comment` (lines) beside the first.
+std::string PlaceText(const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& covariance,
+                      const std::string& comment);
 std::string OpenCvText(const camera::Rig& rig, const std::string& where);
 std::string KalibrText(const camera::Rig& rig, const std::string& where);
 std::vector<std::string> RosTexts(const camera::Rig& rig);  // one for each camera

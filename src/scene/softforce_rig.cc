@@ -62,6 +62,18 @@ std::vector<camera::Camera> ReadRigCameras(YamlMap& map) {
   return cameras;
 }
 
+// Where the rig stands, and how sure that is.
+void ReadPlace(YamlMap& root, camera::Rig* rig) {
+  if (const auto T = root.Optional("T_rig_robot")) rig->T_rig_robot = ReadTransform(*T);
+  const auto covariance = root.Optional("T_rig_robot_covariance");
+  if (!covariance) return;
+  if (!rig->T_rig_robot) {
+    covariance->Fail("there is no T_rig_robot, which it is the covariance of",
+                     "Find the place anew: softforce register --help");
+  }
+  rig->T_rig_robot_covariance = ReadPlaceCovariance(*covariance);
+}
+
 std::string ToYaml(const camera::Camera& camera) {
   const LensNumbers lens = NumbersOf(camera);
   std::string yaml = "  " + Quoted(camera.name) + ":\n";
@@ -81,7 +93,7 @@ camera::Rig ReadSoftforceRig(const std::filesystem::path& file,
   return ReadYamlFile(file, [&](YamlMap& root) {
     camera::Rig rig;
     rig.cameras = root.Required("cameras").ReadMap(ReadRigCameras);
-    if (const auto T = root.Optional("T_rig_robot")) rig.T_rig_robot = ReadTransform(*T);
+    ReadPlace(root, &rig);
     if (const auto section = root.Optional("calibration")) {
       const RigStatistics read = section->ReadMap(ReadStatistics);
       if (statistics != nullptr) *statistics = read;
@@ -93,7 +105,7 @@ camera::Rig ReadSoftforceRig(const std::filesystem::path& file,
 std::string SoftforceText(const camera::Rig& rig, const std::optional<RigStatistics>& statistics) {
   std::string yaml = fmt::format("softforce: {}\ncameras:\n", kFormatVersion);
   for (const camera::Camera& camera : rig.cameras) yaml += ToYaml(camera);
-  if (rig.T_rig_robot) yaml += "T_rig_robot:  # metres\n" + Rows(*rig.T_rig_robot, "  ");
+  if (rig.T_rig_robot) yaml += PlaceText(*rig.T_rig_robot, rig.T_rig_robot_covariance, "");
   if (statistics) yaml += StatisticsText(*statistics);
   return yaml;
 }

@@ -90,7 +90,7 @@ TEST(Register, ARunWithoutFiducialsUsesThePlaceInTheRigFile) {
   // Again: the place is replaced, not added a second time.
   ASSERT_EQ(testing::RunProgram(fmt::format("register '{}' --in-place", scene)).exit_code, 0);
   const std::string again = testing::ReadText(demo / "rig.yaml");
-  EXPECT_EQ(again.find("T_rig_robot"), again.rfind("T_rig_robot"));
+  EXPECT_EQ(again.find("T_rig_robot:"), again.rfind("T_rig_robot:"));
 }
 
 // Rows of a table of pairs, right but for one.

@@ -1,26 +1,38 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
 #include "acceptance/board_scene.h"
+#include "pipeline/certainty.h"
 #include "softforce/pipeline/calibrate.h"
 
 namespace softforce::pipeline {
 namespace {
 
+namespace fs = std::filesystem;
+
 using softforce::testing::BoardPlace;
 using softforce::testing::BoardScene;
 using softforce::testing::GoodPlaces;
+
+const fs::path kRealPictures = "/usr/share/doc/opencv-doc/examples/data";
 
 // A pair of cameras before which a board is shown in one place after the other, each for so many
 // moments.
 class ShownBoard : public vision::FrameSource {
  public:
-  ShownBoard(std::vector<BoardPlace> places, int moments) : moments_(moments) {
+  ShownBoard(const std::vector<BoardPlace>& places, int moments) : moments_(moments) {
     const BoardScene scene = softforce::testing::MakeChessboard(9, 6);
     for (const BoardPlace& place : places) {
       sets_.push_back({scene.Picture(place.turn, place.middle, false),
                        scene.Picture(place.turn, place.middle, true)});
     }
   }
+  ShownBoard(std::vector<std::vector<cv::Mat>> sets, int moments)
+      : sets_(std::move(sets)), moments_(moments) {}
 
   std::optional<vision::FrameSet> Next() override {
     const int place = next_ / moments_;
@@ -89,11 +101,99 @@ TEST(CalibrateLive, CalibratesWithWhatThereIsWhenStopped) {
 }
 
 TEST(CalibrateLive, SaysThatNothingWasSeen) {
-  ShownBoard source({}, 1);
+  ShownBoard source(std::vector<BoardPlace>(), 1);
   const report::CalibrationRecord record = CalibrateLive(source, {"left", "right"}, Options());
 
   EXPECT_FALSE(record.result.ok());
   EXPECT_FALSE(record.result.reason.empty());
+}
+
+// Real pictures of a pair of cameras, each shown twice.
+ShownBoard RealPictures() {
+  std::vector<std::vector<cv::Mat>> sets;
+  for (int i = 1; i <= 14; ++i) {
+    if (i == 10) continue;  // there is none
+    std::vector<cv::Mat> set;
+    for (const char* side : {"left", "right"}) {
+      const fs::path file = kRealPictures / fmt::format("{}{:02}.jpg", side, i);
+      set.push_back(cv::imread(file.string(), cv::IMREAD_GRAYSCALE));
+    }
+    sets.push_back(set);
+  }
+  return {sets, 2};
+}
+
+// What the real pictures cover soon.
+GuideOptions EasyCoverage() {
+  GuideOptions guide;
+  guide.columns = guide.rows = 1;
+  guide.views_per_tilt = 1;
+  guide.tilt = 0.1;
+  guide.min_views = 4;
+  return guide;
+}
+
+bool Advises(const report::CalibrationRecord& record, calibration::Advice::Kind kind) {
+  const auto& advice = record.result.advice;
+  return std::any_of(advice.begin(), advice.end(),
+                     [&](const calibration::Advice& given) { return given.kind == kind; });
+}
+
+report::CalibrationRecord ShowReal(double max_uncertainty_px, int max_views = 60) {
+  GuideOptions guide = EasyCoverage();
+  guide.max_uncertainty_px = max_uncertainty_px;
+  guide.max_views = max_views;
+  CalibrateOptions options = Options();
+  options.board = vision::ParseBoard("chessboard:9x6,square=25mm");
+  options.calibration.working_distance = 0.4;
+  ShownBoard source = RealPictures();
+  return CalibrateLive(source, {"left", "right"}, options, guide);
+}
+
+class CalibrateLiveReal : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(kRealPictures / "left01.jpg")) {
+      GTEST_SKIP() << "no pictures of opencv-doc in " << kRealPictures;
+    }
+  }
+};
+
+TEST_F(CalibrateLiveReal, EndsWithTheCoverageIfAnyUncertaintyWillDo) {
+  const report::CalibrationRecord record = ShowReal(1e6);
+  ASSERT_TRUE(record.result.ok()) << record.result.reason;
+  EXPECT_LT(record.input.views.size(), 10);
+  EXPECT_FALSE(Advises(record, calibration::Advice::Kind::kUncertainProjection));
+}
+
+TEST_F(CalibrateLiveReal, GoesOnUntilTheProjectionIsCertainEnough) {
+  const size_t covered = ShowReal(1e6).input.views.size();
+  const report::CalibrationRecord record = ShowReal(0.4);
+  ASSERT_TRUE(record.result.ok()) << record.result.reason;
+  EXPECT_GT(record.input.views.size(), covered);
+  EXPECT_LT(record.input.views.size(), 13);
+  EXPECT_LE(CertaintyOf(record.result).sd_px, 0.4);
+  EXPECT_FALSE(Advises(record, calibration::Advice::Kind::kUncertainProjection));
+}
+
+TEST_F(CalibrateLiveReal, SaysWhatIsLackingIfItNeverIs) {
+  const report::CalibrationRecord record = ShowReal(0.01);
+  ASSERT_TRUE(record.result.ok()) << record.result.reason;
+  EXPECT_EQ(record.input.views.size(), 13);
+  EXPECT_TRUE(Advises(record, calibration::Advice::Kind::kUncertainProjection));
+  EXPECT_FALSE(Advises(record, calibration::Advice::Kind::kEndedEarly));
+}
+
+TEST_F(CalibrateLiveReal, GivesUpAtTheMostViews) {
+  const report::CalibrationRecord record = ShowReal(0.01, 11);
+  EXPECT_EQ(record.input.views.size(), 11);
+  EXPECT_TRUE(Advises(record, calibration::Advice::Kind::kUncertainProjection));
+}
+
+TEST(CalibrateLive, SaysWhatOfTheCoverageIsLacking) {
+  ShownBoard source(GoodPlaces(), 2);
+  const report::CalibrationRecord record = CalibrateLive(source, {"left", "right"}, Options());
+  EXPECT_TRUE(Advises(record, calibration::Advice::Kind::kEndedEarly));
 }
 
 }  // namespace

@@ -45,6 +45,8 @@ TEST(SaveRig, WritesWhatLoadRigReadsBackToTheLastBit) {
   rig.cameras[1].lens.distortion = {0.1, -0.2, 1e-7, 1.0 / 3, 0.5, 0.6, 0.7, 0.8};
   rig.T_rig_robot = Eigen::Translation3d(0.1, -0.2, 1.0 / 3) *
                     Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
+  rig.T_rig_robot_covariance.diagonal().setConstant(1e-6 / 3);
+  rig.T_rig_robot_covariance(0, 4) = rig.T_rig_robot_covariance(4, 0) = -3e-7;
 
   SaveRig(rig, TempFolder() / "saved.yaml");
   const camera::Rig loaded = LoadRig(TempFolder() / "saved.yaml");
@@ -63,6 +65,7 @@ TEST(SaveRig, WritesWhatLoadRigReadsBackToTheLastBit) {
   }
   ASSERT_TRUE(loaded.T_rig_robot.has_value());
   EXPECT_EQ(loaded.T_rig_robot->matrix(), rig.T_rig_robot->matrix());
+  EXPECT_EQ(loaded.T_rig_robot_covariance, rig.T_rig_robot_covariance);
 }
 
 TEST(SaveRig, WritesAFisheyeThatLoadRigReadsBack) {
@@ -187,8 +190,8 @@ TEST(LoadRig, RefusesACameraGivenTwice) {
 
 TEST(LoadRig, RefusesAnUnknownKey) {
   EXPECT_EQ(RigRefusal("softforce: 1", "softforce: 1\nT_rig_robots: 1"),
-            "rig.yaml:2: T_rig_robots: unknown key, expected one of T_rig_robot, calibration, "
-            "cameras, softforce\n"
+            "rig.yaml:2: T_rig_robots: unknown key, expected one of T_rig_robot, "
+            "T_rig_robot_covariance, calibration, cameras, softforce\n"
             "  Did you mean \"T_rig_robot\"?");
 }
 

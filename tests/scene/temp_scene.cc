@@ -9,27 +9,7 @@
 #include "softforce/scene/scene.h"
 
 namespace softforce::scene::testing {
-namespace {
-
 namespace fs = std::filesystem;
-
-template <class Load>
-std::string Refusal(Load load) {
-  try {
-    load();
-  } catch (const base::InputError& error) {
-    std::string message = error.what();
-    const std::string folder = (TempFolder() / "").string();
-    for (size_t at; (at = message.find(folder)) != std::string::npos;) {
-      message.erase(at, folder.size());
-    }
-    return message;
-  }
-  ADD_FAILURE() << "it was accepted";
-  return "";
-}
-
-}  // namespace
 
 const char* const kSceneText = R"(softforce: 1
 name: finger
@@ -116,6 +96,21 @@ fs::path WriteScene(const std::string& scene_text, const std::string& actuation_
   WriteFile(folder / "rig.yaml", kRigText);
   WriteFile(folder / "actuation.csv", actuation_text);
   return WriteFile(folder / "scene.yaml", scene_text);
+}
+
+std::string Refusal(const std::function<void()>& load) {
+  try {
+    load();
+  } catch (const base::InputError& error) {
+    std::string message = error.what();
+    const std::string folder = (TempFolder() / "").string();
+    for (size_t at; (at = message.find(folder)) != std::string::npos;) {
+      message.erase(at, folder.size());
+    }
+    return message;
+  }
+  ADD_FAILURE() << "it was accepted";
+  return "";
 }
 
 std::string SceneRefusal(const std::string& from, const std::string& to) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace softforce::scene::testing {
@@ -23,8 +24,10 @@ extern const char* const kRigText;
 std::filesystem::path WriteScene(const std::string& scene_text,
                                  const std::string& actuation_text = kActuationText);
 
-// The message with which the program refuses kSceneText after `from` has been replaced by `to`,
-// without the folder; fails the test if it is accepted.
+// The message with which `load` refuses a file, without the folder; fails the test if it does not.
+std::string Refusal(const std::function<void()>& load);
+
+// The message with which the program refuses kSceneText after `from` has been replaced by `to`.
 std::string SceneRefusal(const std::string& from, const std::string& to);
 
 // The same for a changed actuation table, and a changed rig file.

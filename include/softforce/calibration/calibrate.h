@@ -131,7 +131,9 @@ struct Advice {
     kLargeError,  // points do not fit the board: wrong size or kind of board, or wrong lens model
     kLargeWarp,   // the board is bent
     kPictureLeftOut,
-    kHoldOut,  // held-out views are predicted much worse than those used
+    kHoldOut,              // held-out views are predicted much worse than those used
+    kEndedEarly,           // live: before all was seen that is wanted
+    kUncertainProjection,  // live: more than wanted, at the working distance
   };
 
   Kind kind = Kind::kFewViews;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "softforce/camera/lens.h"
+#include "softforce/geometry/rigid.h"
 
 namespace softforce::camera {
 
@@ -20,6 +21,9 @@ struct Camera {
 struct Rig {
   std::vector<Camera> cameras;
   std::optional<Eigen::Isometry3d> T_rig_robot;  // where the rig stands, if the file says so
+  // Of T_rig_robot, as of a vision::RigPose: of a small twist (m, rad) in the rig frame. Zero:
+  // exact.
+  geometry::Matrix6d T_rig_robot_covariance = geometry::Matrix6d::Zero();
 
   // The number of the camera called `name`, or nothing.
   std::optional<int> Find(const std::string& name) const;

@@ -34,8 +34,9 @@ struct CalibrateOptions {
 report::CalibrationRecord Calibrate(const CalibrateOptions& options);
 
 // The same from cameras that run, named in the source's order: collects views, says on standard
-// error which pose is wanted next, and ends when enough has been seen or `calibration.stop` is set;
-// then calibrates with what there is. `inputs` is not used.
+// error which pose is wanted next, and ends when the boards cover enough of the pictures and the
+// projection is certain enough, or `calibration.stop` is set; then calibrates with what there is.
+// What was not reached is among the advice. `inputs` is not used.
 report::CalibrationRecord CalibrateLive(vision::FrameSource& source,
                                         const std::vector<std::string>& cameras,
                                         const CalibrateOptions& options,

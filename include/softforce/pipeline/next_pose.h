@@ -12,6 +12,10 @@ struct GuideOptions {
   double tilt = 0.35;         // rad, from which on a board counts as tilted
   int views_per_tilt = 2;     // to each of the four sides, of every camera
   int min_views = 12;         // of every camera; and that each shares with another one
+  // px, standard deviation of the projection at the working distance; see Certainty. Collecting
+  // goes on when all regions and tilts are there, until it is reached or so many views are there.
+  double max_uncertainty_px = 0.2;
+  int max_views = 60;
 
   void Check() const;  // throws InputError naming the option
 };
@@ -29,11 +33,13 @@ struct WantedPose {
 
 struct Guidance {
   double done = 0;                 // share of what is wanted that has been seen
-  std::optional<WantedPose> next;  // nothing: enough has been seen
+  std::optional<WantedPose> next;  // nothing: all has been seen
 
   // "left: top right of the picture, face turned to the left by 30 to 45 degrees"
   std::string Text(const calibration::CalibrationInput& input, const GuideOptions& options) const;
 };
+
+std::string RegionText(const WantedPose& pose, const GuideOptions& options);  // "top right"
 
 // Which way a board faces in one picture. No lens is known yet: a usual focal length (that of a
 // field of view of 50°) is good enough to tell a board that is tilted by 20° from a straight one.

@@ -25,6 +25,9 @@ struct RigReadOptions {
   std::optional<std::array<int, 2>> resolution;  // px, width and height; the file's own wins
 };
 
+RigFormat FormatOfRig(const std::filesystem::path& file);  // as its content shows
+std::string NameOf(RigFormat format);                      // for a person
+
 // Reads a rig of any format; which one is seen from the content. Throws InputError naming file,
 // camera and key: a rotation that is none, a lens model it does not know, a resolution or focal
 // length that is not positive, …
