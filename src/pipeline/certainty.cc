@@ -11,8 +11,6 @@ namespace softforce::pipeline {
 namespace {
 
 constexpr double kShare = 0.9;  // of the picture that must be certain
-// Coarser than in the report: it is looked at again and again.
-constexpr int kColumns = 13, kRows = 10;
 // Of cameras whose model is chosen in the end, by held-out views.
 constexpr auto kUsualLens = calibration::LensFit::kBrownConrady5;
 
@@ -64,8 +62,6 @@ Certainty CertaintyOf(const calibration::Calibration& calibration) {
 
 CertaintyWatch::CertaintyWatch(const CalibrateOptions& options) : options_(options) {
   options_.calibration.max_folds = 0;
-  options_.calibration.uncertainty_columns = kColumns;
-  options_.calibration.uncertainty_rows = kRows;
   options_.calibration.on_progress = nullptr;
 }
 
