@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
+#include "softforce/base/entries.h"
 #include "softforce/base/input_error.h"
 #include "softforce/vision/board_pictures.h"
-#include "vision/input_files.h"
 
 namespace softforce::vision {
 namespace {
@@ -17,6 +17,66 @@ using base::InputError;
 
 constexpr const char* kHowToName =
     "Name the cameras yourself, as left='cam_a*.png' right='cam_b*.png'.";
+
+enum class Kind { kPicture, kVideo, kNeither };
+
+Kind KindOf(const fs::path& file) {
+  static const std::set<std::string> kPictures{".png",  ".jpg", ".jpeg", ".bmp",  ".tif",
+                                               ".tiff", ".pgm", ".ppm",  ".webp", ".jp2"};
+  static const std::set<std::string> kVideos{".mp4",  ".avi", ".mkv", ".mov",
+                                             ".webm", ".m4v", ".mpg", ".ts"};
+  const std::string ending = base::LowerCase(file.extension().string());
+  if (kPictures.count(ending) > 0) return Kind::kPicture;
+  return kVideos.count(ending) > 0 ? Kind::kVideo : Kind::kNeither;
+}
+
+bool Matches(const char* pattern, const char* name) {
+  if (*pattern == 0) return *name == 0;
+  if (*pattern == '*')
+    return Matches(pattern + 1, name) || (*name != 0 && Matches(pattern, name + 1));
+  return *name != 0 && (*pattern == '?' || *pattern == *name) && Matches(pattern + 1, name + 1);
+}
+
+// Files of a folder whose names match, in their order.
+std::vector<fs::path> Listed(const fs::path& folder, const std::string& pattern) {
+  std::vector<fs::path> files;
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator(folder, unreadable)) {
+    const fs::path& file = entry.path();
+    if (!entry.is_regular_file() || KindOf(file) == Kind::kNeither) continue;
+    if (Matches(pattern.c_str(), file.filename().c_str())) files.push_back(file);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<fs::path> Expanded(const std::string& input) {
+  const fs::path path = input;
+  if (fs::is_directory(path)) {
+    std::vector<fs::path> files = Listed(path, "*");
+    if (files.empty()) throw InputError(input, "is a folder without pictures or videos");
+    return files;
+  }
+  const std::string name = path.filename().string();
+  if (name.find_first_of("*?") != std::string::npos && !fs::exists(path)) {
+    std::vector<fs::path> files =
+        Listed(path.has_parent_path() ? path.parent_path() : fs::path("."), name);
+    if (files.empty()) {
+      throw InputError(input, "matches no picture or video",
+                       "Check the folder and the pattern; * and ? work in the file's name.");
+    }
+    if (!path.has_parent_path()) {
+      for (fs::path& file : files) file = file.filename();
+    }
+    return files;
+  }
+  if (!fs::is_regular_file(path)) throw InputError(input, "there is no such file or folder");
+  if (KindOf(path) == Kind::kNeither) {
+    throw InputError(input, "is neither a picture nor a video, by its ending",
+                     "Pictures: .png .jpg .bmp .tif .pgm .webp; videos: .mp4 .avi .mkv .mov.");
+  }
+  return {path};
+}
 
 // A file's name, cut where digits begin and end.
 struct Name {
@@ -125,7 +185,7 @@ void AddPictures(const std::vector<Numbered>& files, CameraInput* camera) {
 CameraInput Named(const std::string& name, const std::vector<fs::path>& files) {
   CameraInput camera;
   camera.camera = name;
-  if (KindOf(files.front()) == InputKind::kVideo) {
+  if (KindOf(files.front()) == Kind::kVideo) {
     if (files.size() > 1) {
       throw InputError(
           files[1].string(),
@@ -143,7 +203,7 @@ std::vector<CameraInput> Grouped(const std::vector<fs::path>& files) {
   std::vector<std::pair<std::string, std::string>> keys;
   std::vector<std::vector<Numbered>> members;
   if (files.empty()) return {};
-  const bool videos = KindOf(files.front()) == InputKind::kVideo;
+  const bool videos = KindOf(files.front()) == Kind::kVideo;
   for (Numbered& file : Number(files)) {
     // Each video is a camera of its own, whatever its name.
     const std::pair<std::string, std::string> key{file.folder,
@@ -237,7 +297,7 @@ std::vector<CameraInput> SortInputs(const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
     const std::string name = NameOf(input);
     if (files.count(name) == 0) names.push_back(name);
-    for (fs::path& file : InputFiles(name.empty() ? input : input.substr(name.size() + 1))) {
+    for (fs::path& file : Expanded(name.empty() ? input : input.substr(name.size() + 1))) {
       if (std::find(all.begin(), all.end(), file) != all.end()) {
         throw InputError(file.string(), "is given twice");
       }
