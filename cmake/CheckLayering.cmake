@@ -46,8 +46,8 @@ function(check_file file allowed_libraries)
       endif()
     elseif(line MATCHES "^#include <([^>]*)>")
       set(header ${CMAKE_MATCH_1})
-      if(header MATCHES "^[a-z_]+$" OR header MATCHES "^(unistd|fcntl|sys/[a-z]+)\\.h$")
-        continue()  # the standard library and POSIX
+      if(header MATCHES "^[a-z_]+$" OR header MATCHES "^(unistd|fcntl|sys/[a-z]+|linux/[a-z0-9]+)\\.h$")
+        continue()  # the standard library, POSIX and Linux
       endif()
       set(known FALSE)
       foreach(library IN LISTS allowed_libraries)

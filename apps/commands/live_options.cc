@@ -23,8 +23,8 @@ void AddLiveOptions(CLI::App* app, LiveArguments* arguments) {
                   "and by default, half the time between two pictures");
   app->add_option(
          "--time-offset", arguments->time_offsets,
-         "Live: NAME=TIME: by how much a camera's time stamps are late, as right=\"4 ms\"; "
-         "may be repeated")
+         "NAME=TIME: by how much a camera's time stamps are late, as right=\"4 ms\", instead of "
+         "what the rig file says; may be repeated")
       ->allow_extra_args(false);
   app->add_option("--stall", arguments->stall,
                   fmt::format("Live: a camera that gives no picture for so long is opened again, "

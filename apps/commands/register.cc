@@ -9,9 +9,12 @@
 #include "commands/stop.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
+#include "softforce/base/quantity.h"
 #include "softforce/pipeline/register.h"
+#include "softforce/pipeline/time_offsets.h"
 #include "softforce/scene/place_rig.h"
 #include "softforce/scene/scene.h"
+#include "softforce/scene/set_time_offsets.h"
 
 namespace softforce::apps {
 namespace {
@@ -22,6 +25,8 @@ struct RegisterArguments {
   std::string scene;
   std::string from, pairs, out;
   bool in_place = false;
+  bool clocks = false;
+  std::string duration, search;
   std::vector<std::string> cameras;
   LiveArguments live;
   pipeline::RegisterOptions options;
@@ -66,12 +71,46 @@ std::filesystem::path Target(const RegisterArguments& arguments) {
   return target;
 }
 
+void Read(const std::string& text, const char* option, double* seconds) {
+  if (!text.empty()) *seconds = base::ParseQuantity(text, base::Dimension::kTime, 1, option)[0];
+}
+
+// The cameras' time offsets instead of the rig's place.
+int FindClocks(const RegisterArguments& arguments) {
+  if (!arguments.from.empty() || !arguments.pairs.empty()) {
+    throw base::InputError("--clocks", "goes without --from and --pairs",
+                           "Find the rig's place in a second call.");
+  }
+  pipeline::TimeOffsetsOptions options;
+  options.sources = ParseCameraSources(arguments.cameras);
+  options.live = ParseLiveOptions(arguments.live);
+  options.time_offsets_s = ParseTimeOffsets(arguments.live);
+  Read(arguments.duration, "--duration", &options.duration_s);
+  Read(arguments.search, "--largest-offset", &options.search.longest_s);
+  options.stop = StopOnSignal();
+  const std::filesystem::path target = Target(arguments);
+  const pipeline::TimeOffsetsReport report = pipeline::FindTimeOffsets(arguments.scene, options);
+  fmt::print("{}", report.FullReport());
+  if (!report.usable()) return 1;
+  if (!target.empty()) {
+    scene::WriteTimeOffsets(report.rig_file, report.rig, target);
+    fmt::print("\nWritten: {}\n", target.string());
+  }
+  return 0;
+}
+
 int Register(RegisterArguments* arguments) {
+  if (arguments->clocks) return FindClocks(*arguments);
+  if (!arguments->duration.empty() || !arguments->search.empty()) {
+    throw base::InputError(arguments->search.empty() ? "--duration" : "--largest-offset",
+                           "goes with --clocks only");
+  }
   pipeline::RegisterOptions& options = arguments->options;
   options.from = ParseFrom(*arguments);
   options.pairs = arguments->pairs;
   options.sources = ParseCameraSources(arguments->cameras);
   options.live = ParseLiveOptions(arguments->live);
+  options.time_offsets_s = ParseTimeOffsets(arguments->live);
   options.stop = StopOnSignal();
   const std::filesystem::path target = Target(*arguments);
   const pipeline::RegisterReport report = pipeline::Register(arguments->scene, options);
@@ -115,6 +154,16 @@ Command AddRegister(CLI::App* program) {
                   "NAME=SOURCE: video file or live source of a camera instead of the scene's; may "
                   "be repeated")
       ->allow_extra_args(false);
+  app->add_flag("--clocks", arguments->clocks,
+                "Instead of the place: by how much the time stamps of each camera are late, from "
+                "the markers' motion; writes time_offset into the rig file");
+  app->add_option("--duration", arguments->duration,
+                  "With --clocks: time to look at, as \"10 s\"; default: all of a recording, or "
+                  "until Ctrl-C");
+  app->add_option("--largest-offset", arguments->search,
+                  fmt::format("With --clocks: what is searched to either side of the offsets that "
+                              "are known, default \"{:g} ms\"",
+                              1e3 * vision::TimeOffsetOptions().longest_s));
   AddLiveOptions(app, &arguments->live);
   return {app, [arguments] { return Register(arguments.get()); }};
 }

@@ -20,8 +20,10 @@ std::unique_ptr<vision::FrameSource> OpenCameras(
     const RunOptions& options) {
   std::map<std::string, std::string> by_camera;
   for (const auto& source : sources) by_camera[source.camera] = source.file.string();
+  vision::LiveOptions live = options.live;
+  live.stop = options.stop;
   return std::make_unique<vision::LiveCameras>(
-      vision::LiveCamerasOf(rig, by_camera, options.time_offsets_s), options.live);
+      vision::LiveCamerasOf(rig, by_camera, options.time_offsets_s), live);
 }
 
 std::vector<std::string> NamesOf(const camera::Rig& rig) {
@@ -62,8 +64,8 @@ FrameFeed::FrameFeed(const scene::Scene& scene, const camera::Rig& rig, const Ru
   if (live_) {
     RefuseUnknownLocations(scene);
   } else {
-    source_ = std::make_unique<vision::Recording>(
-        OpenRecording(scene, rig, sources_, options.first_frame, "--frames"));
+    source_ = std::make_unique<vision::Recording>(OpenRecording(
+        scene, rig, sources_, options.first_frame, "--frames", options.time_offsets_s));
   }
 }
 
@@ -133,11 +135,21 @@ void FrameFeed::Record(const vision::FrameSet& set) {
   const std::vector<std::string> names = NamesOf(rig_);
   vision::RecorderOptions recorder;
   recorder.wait = true;  // live cameras then drop what is neither recorded nor processed
-  for (const std::string& name : names) {
-    recorder.sources.push_back(TextOf(sources_, name));
-  }
+  for (const std::string& name : names) recorder.sources.push_back(TextOf(sources_, name));
+  recorder.time_offsets_s = TimeOffsets();
   if (!recorder_) recorder_.emplace(options_.record, names, recorder);
   recorder_->Add(set);
+}
+
+std::vector<double> FrameFeed::TimeOffsets() const {
+  if (const auto* recording = dynamic_cast<const vision::Recording*>(source_.get())) {
+    return recording->time_offsets_s();
+  }
+  std::vector<double> offsets_s;
+  for (const auto& camera : dynamic_cast<const vision::LiveCameras&>(*source_).cameras()) {
+    offsets_s.push_back(camera.time_offset_s);
+  }
+  return offsets_s;
 }
 
 void FrameFeed::Finish() {

@@ -38,6 +38,9 @@ class FrameFeed {
   void Finish();
 
   bool live() const { return live_; }
+  // s, by which the time stamps of each camera are taken to be late; after Start().
+  std::vector<double> TimeOffsets() const;
+
   int expected_frames() const;                                       // 0 if the end is not known
   vision::SourceReport Report() const { return source_->Report(); }  // from any thread
   std::optional<vision::RecorderReport> Recorded() const;

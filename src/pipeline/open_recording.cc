@@ -54,10 +54,11 @@ std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene,
 
 vision::Recording OpenRecording(const scene::Scene& scene, const camera::Rig& rig,
                                 const std::vector<vision::Recording::Source>& sources,
-                                int first_frame, const std::string& asked_by) {
+                                int first_frame, const std::string& asked_by,
+                                const std::map<std::string, double>& time_offsets_s) {
   RefuseUnknownLocations(scene);
   RefuseLiveSources(scene, sources);
-  vision::Recording recording(rig, sources);
+  vision::Recording recording(rig, sources, time_offsets_s);
   const int announced = recording.announced_frames();
   if (announced > 0 && first_frame >= announced) {
     throw base::InputError(

@@ -27,9 +27,11 @@ std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene,
 bool AreLive(const std::vector<vision::Recording::Source>& sources);
 
 // Opens the recording of a scene whose forces act at known places. Throws InputError if it cannot
-// be read, has live sources, or ends before `first_frame`.
+// be read, has live sources, or ends before `first_frame`. `time_offsets_s` (camera → s): instead
+// of the rig's.
 vision::Recording OpenRecording(const scene::Scene& scene, const camera::Rig& rig,
                                 const std::vector<vision::Recording::Source>& sources,
-                                int first_frame, const std::string& asked_by);
+                                int first_frame, const std::string& asked_by,
+                                const std::map<std::string, double>& time_offsets_s = {});
 
 }  // namespace softforce::pipeline

@@ -149,13 +149,17 @@ std::string RecordReport::FullReport() const {
 RecordReport Record(const RecordOptions& options) {
   options.Check();
   vision::RefuseUsedFolder(options.out);
-  vision::LiveCameras cameras(CamerasOf(options), options.live);
+  vision::LiveOptions live = options.live;
+  live.stop = options.stop;
+  vision::LiveCameras cameras(CamerasOf(options), live);
   RecordReport report;
   report.out = options.out;
+  if (options.stop != nullptr && *options.stop) return report;  // no folder for nothing
   vision::RecorderOptions recorder_options = options.recorder;
   for (const vision::LiveCamera& camera : cameras.cameras()) {
     report.cameras.push_back(camera.name);
     recorder_options.sources.push_back(camera.source);
+    recorder_options.time_offsets_s.push_back(camera.time_offset_s);
   }
   vision::Recorder recorder(options.out, report.cameras, recorder_options);
   Watch watch(options, &cameras, &recorder);

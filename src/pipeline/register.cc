@@ -57,6 +57,7 @@ class Job {
     run.out.clear();  // nothing is written
     run.sources = options_.sources;
     run.live = options_.live;
+    run.time_offsets_s = options_.time_offsets_s;
     run.stop = options_.stop;
     run.first_frame = options_.frame;
     run.end_frame = options_.frame + count;

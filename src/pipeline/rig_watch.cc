@@ -19,11 +19,8 @@ constexpr int kConfirm = 3;           // frames in a row
 constexpr int kAlone = 10;            // frames in a row that a single fiducial must be off
 constexpr double kRigidRms = 0.5;     // px; or so many times that of the first registration:
 constexpr double kRigidShare = 3;
-constexpr double kAreaMargin = 0.6;      // of a fiducial's size in the picture, on every side
-constexpr int kMinMargin = 24;           // px
-constexpr int kMarkerFrames = 10;        // in a row that the markers must be off
-constexpr double kMarkerSds = 6;         // standard deviations that they must be off
-constexpr double kMarkerFloor = 0.1e-3;  // m
+constexpr double kAreaMargin = 0.6;  // of a fiducial's size in the picture, on every side
+constexpr int kMinMargin = 24;       // px
 
 // px, root mean square over the corners.
 double Shift(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b) {
@@ -52,6 +49,8 @@ const char* Name(RigEvent::Kind kind) {
       return "fiducial_moved";
     case RigEvent::Kind::kPerhapsBumped:
       return "perhaps_bumped";
+    case RigEvent::Kind::kBack:
+      return "back";
   }
   return "";
 }
@@ -258,49 +257,26 @@ void RigWatch::Improve(const Tags& fiducials) {
   if (++improved_by_ >= frames_) improving_.reset();
 }
 
-void RigWatch::LookAtMarkers(int frame, const std::vector<MarkerObservation>& observations,
-                             const Eigen::Matrix3Xd& X, const Eigen::Matrix3Xd& u,
-                             double common_model_error) {
-  if (saw_fiducials_) return;
-  std::vector<Eigen::Vector3d> model, measured;
-  double displacement = 0;  // m, the largest
-  for (const MarkerObservation& observation : observations) {
-    const estimation::Observation& seen = observation.seen;
-    if (seen.whitening.rows() < 3 || !seen.position.allFinite()) continue;
-    model.push_back(seen.at.Apply(X + u) + seen.offset);
-    measured.push_back(seen.position);
-    displacement = std::max(displacement, seen.at.Apply(u).norm());
-  }
-  if (model.size() < 4) return;  // too few to tell; neither for nor against
-  const auto n = static_cast<Eigen::Index>(model.size());
-  const auto points = [n](const std::vector<Eigen::Vector3d>& list) {
-    return Eigen::Map<const Eigen::Matrix3Xd>(list.front().data(), 3, n);
-  };
-  const Eigen::Isometry3d offset(Eigen::umeyama(points(model), points(measured), false));
-  const Eigen::Vector3d centre = points(model).rowwise().mean();
-  const double moved = (offset * centre - centre).norm();
-  double before = 0, after = 0;  // m², mean squares
-  for (size_t i = 0; i < model.size(); ++i) {
-    before += (measured[i] - model[i]).squaredNorm() / static_cast<double>(n);
-    after += (measured[i] - offset * model[i]).squaredNorm() / static_cast<double>(n);
-  }
-  const double sd =
-      std::sqrt(kMarkerFloor * kMarkerFloor + std::pow(common_model_error * displacement, 2) +
-                PointCovariance(standing_.T_rig_robot, standing_.covariance, centre).trace() / 3);
-  // Off alike: a rigid motion takes most of the misfit away.
-  const bool off = std::sqrt(before) > kMarkerSds * sd && after < before / 4;
-  markers_off_ = off ? markers_off_ + 1 : 0;
-  if (off && markers_off_ == 1) markers_off_since_ = frame;
-  if (markers_off_ != kMarkerFrames) return;
+void RigWatch::LookAtMarkers(const BlindWatch::Estimated& estimated) {
+  if (saw_fiducials_) return blind_.Forget();
+  const auto found = blind_.Look(estimated);
+  if (!found) return;
   RigEvent event;
-  event.kind = RigEvent::Kind::kPerhapsBumped;
-  event.frame = markers_off_since_;
-  event.told = frame;
-  event.text = fmt::format(
-      "frame {}: the rig may have been bumped: since then all markers are off alike, by {:.2f} mm "
-      "and {:.2f} degrees against the model, and no fiducials are in view. Check the forces, and "
-      "register the rig anew",
-      event.frame, 1e3 * moved, Eigen::AngleAxisd(offset.linear()).angle() * 180 / M_PI);
+  event.frame = found->frame;
+  event.told = estimated.frame;
+  if (found->kind == BlindWatch::Finding::Kind::kBack) {
+    event.kind = RigEvent::Kind::kBack;
+    event.text =
+        fmt::format("frame {}: the markers are where they can be again; forces go on", event.frame);
+  } else {
+    event.kind = RigEvent::Kind::kPerhapsBumped;
+    event.text = fmt::format(
+        "frame {}: the rig may have been bumped: since then all markers are off alike, by {:.2f} "
+        "mm and {:.2f} degrees against the model, and no fiducials are in view. {}, and register "
+        "the rig anew",
+        event.frame, 1e3 * found->moved, found->turned * 180 / M_PI,
+        estimated.usable ? "Check the forces" : "No forces explain it: put it back, or stop here");
+  }
   Report(event);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/blind_watch.h"
 #include "pipeline/registration.h"
 #include "softforce/pipeline/tracker.h"
 
@@ -16,7 +17,8 @@ struct RigEvent {
     kBumped,         // the rig stands elsewhere; it was placed anew
     kCamerasMoved,   // against each other: no place of the rig explains what they see
     kFiducialMoved,  // by itself; it is not used any more
-    kPerhapsBumped   // all markers are off alike, and there are no fiducials to tell by
+    kPerhapsBumped,  // all markers are off alike, and there are no fiducials to tell by
+    kBack            // after that no forces explained the frames; now they do again
   };
 
   Kind kind = Kind::kBumped;
@@ -55,11 +57,13 @@ class RigWatch {
   // Per camera what it sees; empty if nobody looked.
   Verdict Look(int frame, const std::vector<std::vector<vision::Tag>>& fiducials);
 
-  // For a frame in which no fiducials are seen: whether the markers (`common_model_error`: see
-  // EstimatorOptions) are off alike. X, u: nodes at rest and their displacements.
-  void LookAtMarkers(int frame, const std::vector<MarkerObservation>& observations,
-                     const Eigen::Matrix3Xd& X, const Eigen::Matrix3Xd& u,
-                     double common_model_error);
+  // After the estimate of a frame in which no fiducials are seen; see BlindWatch.
+  void LookAtMarkers(const BlindWatch::Estimated& estimated);
+
+  // Whether forces should be looked for in a frame that is trusted.
+  bool WorthATry(const std::vector<CameraDetections>& detections) {
+    return saw_fiducials_ || blind_.WorthATry(detections);
+  }
 
   const Standing& standing() const { return standing_; }
   const std::vector<RigEvent>& events() const { return events_; }
@@ -97,8 +101,8 @@ class RigWatch {
   std::optional<calibration::FiducialRegistration> improving_;  // after a bump
   int improved_by_ = 0;                                         // frames
   std::vector<int> off_alone_;                                  // per fiducial, frames in a row
-  bool saw_fiducials_ = false;                    // in the frame that Look() was last called for
-  int markers_off_since_ = -1, markers_off_ = 0;  // frame; frames in a row
+  bool saw_fiducials_ = false;  // in the frame that Look() was last called for
+  BlindWatch blind_;
 };
 
 }  // namespace softforce::pipeline

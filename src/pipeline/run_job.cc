@@ -18,6 +18,7 @@ namespace {
 // Of a recording; enough that the threads go on drawing while one frame takes long to estimate.
 constexpr int kFramesPerThread = 4;
 constexpr int kLiveFramesWaiting = 2;
+constexpr char kMoved[] = "the rig or the body has moved, and no fiducials are in view";
 
 std::optional<MeshCorrection> CorrectionFor(const scene::Scene& scene, const RunOptions& options) {
   if (options.mesh_aim == MeshAim::kGiven) return std::nullopt;
@@ -66,13 +67,17 @@ void RunJob::Estimate(FrameInWork* frame) {
   const RigWatch::Verdict verdict = watch_.Look(number, frame->fiducials);
   const Standing& standing = watch_.standing();
   if (verdict.placed_anew) tracker_.PlaceRig(standing.T_rig_robot, standing.covariance);
-  frame->result = verdict.trusted ? tracker_.Process(number, frame->set.time_s, frame->detections)
-                                  : tracker_.Skip(number, frame->set.time_s, verdict.reason);
+  const bool worth_it = options_.watch_rig == 0 || watch_.WorthATry(frame->detections);
+  const double time_s = frame->set.time_s;
+  frame->result = !verdict.trusted ? tracker_.Skip(number, time_s, verdict.reason)
+                  : !worth_it      ? tracker_.Skip(number, time_s, kMoved)
+                                   : tracker_.Process(number, time_s, frame->detections);
   frame->T_rig_robot = standing.T_rig_robot;
   frame->u = tracker_.state().u;
-  if (options_.watch_rig == 0 || !verdict.trusted) return;
-  watch_.LookAtMarkers(number, tracker_.observations(), world_.mesh().nodes, frame->u,
-                       options_.tracker.estimator.common_model_error);
+  if (options_.watch_rig == 0 || !verdict.trusted || !worth_it) return;
+  watch_.LookAtMarkers({number, frame->result.status == estimation::ForceEstimate::Status::kOk,
+                        frame->detections, tracker_.observations(), world_.mesh().nodes, frame->u,
+                        options_.tracker.estimator.common_model_error, standing});
 }
 
 std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress) {

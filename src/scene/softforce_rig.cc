@@ -49,6 +49,12 @@ camera::Camera ReadCamera(YamlMap& map) {
   camera.width = resolution[0].Integer(1);
   camera.height = resolution[1].Integer(1);
   camera.T_camera_rig = ReadTransform(map.Required("T_camera_rig"));
+  if (const auto offset = map.Optional("time_offset")) {
+    camera.time_offset_s = offset->Quantity(base::Dimension::kTime);
+  }
+  if (const auto sd = map.Optional("time_offset_sd")) {
+    camera.time_offset_sd_s = sd->PositiveQuantity(base::Dimension::kTime);
+  }
   return camera;
 }
 
@@ -83,6 +89,11 @@ std::string ToYaml(const camera::Camera& camera) {
   yaml += "    distortion: " + List(lens.distortion);
   yaml += lens.fisheye ? "  # k1, k2, k3, k4\n" : "  # k1, k2, p1, p2, k3, k4, k5, k6\n";
   yaml += "    T_camera_rig:  # metres\n" + Rows(camera.T_camera_rig, "      ");
+  if (camera.time_offset_s != 0)
+    yaml += fmt::format("    time_offset: {} s\n", camera.time_offset_s);
+  if (camera.time_offset_sd_s > 0) {
+    yaml += fmt::format("    time_offset_sd: {} s\n", camera.time_offset_sd_s);
+  }
   return yaml;
 }
 

@@ -1,7 +1,12 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/videodev2.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
-#include <filesystem>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -48,6 +53,28 @@ class DeviceStream : public CameraStream {
   Patience* patience_;
 };
 
+// Why a device cannot be a camera, as far as that shows before it is used; empty: it can.
+std::string WhyNoCamera(const std::string& device) {
+  const int file = open(device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) {
+    if (errno == ENOENT) return fmt::format("there is no device {}", device);
+    if (errno == EACCES || errno == EPERM) {
+      return fmt::format("there is no permission to use {}; its group is mostly \"video\"", device);
+    }
+    if (errno == EBUSY) return fmt::format("{} is in use by another program", device);
+    return fmt::format("{}: {}", device, std::strerror(errno));
+  }
+  v4l2_capability capability{};
+  const bool answers = ioctl(file, VIDIOC_QUERYCAP, &capability) == 0;
+  close(file);
+  if (!answers) return fmt::format("{} is no camera (V4L2)", device);
+  const bool own = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  const uint32_t can = own ? capability.device_caps : capability.capabilities;
+  if ((can & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE)) != 0) return "";
+  return fmt::format("{} gives no pictures; many cameras have a second device beside it that does",
+                     device);
+}
+
 }  // namespace
 
 OpenedStream OpenDevice(const LiveCamera& camera, const LiveOptions& options, Patience* patience,
@@ -57,17 +84,12 @@ OpenedStream OpenDevice(const LiveCamera& camera, const LiveOptions& options, Pa
          fmt::format("{}", std::max(1, static_cast<int>(options.stall_s))).c_str(), 0);
   const std::string device =
       camera.source.rfind("/dev/", 0) == 0 ? camera.source : "/dev/video" + camera.source;
-  std::error_code ignored;
-  if (!std::filesystem::exists(device, ignored)) {
-    *problem = fmt::format("there is no device {}", device);
-    return nullptr;
-  }
+  *problem = WhyNoCamera(device);
+  if (!problem->empty()) return nullptr;
   cv::VideoCapture capture;
   if (!capture.open(device, cv::CAP_V4L2)) {
-    *problem = fmt::format(
-        "the device {} cannot be opened: in use, no permission (group video), "
-        "or no camera",
-        device);
+    *problem =
+        fmt::format("{} is in use by another program, or has no format that can be read", device);
     return nullptr;
   }
   if (options.pixel_format.size() == 4) {
@@ -79,6 +101,15 @@ OpenedStream OpenDevice(const LiveCamera& camera, const LiveOptions& options, Pa
     capture.set(cv::CAP_PROP_FRAME_HEIGHT, camera.size.height);
   }
   if (options.rate_hz > 0) capture.set(cv::CAP_PROP_FPS, options.rate_hz);
+  const cv::Size size(static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
+                      static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT)));
+  if (!camera.size.empty() && size != camera.size) {
+    *problem = fmt::format(
+        "{} does not give pictures of {}x{} px, but of {}x{} px; see v4l2-ctl -d {} "
+        "--list-formats-ext, and --pixel-format",
+        device, camera.size.width, camera.size.height, size.width, size.height, device);
+    return nullptr;
+  }
   return std::make_unique<DeviceStream>(std::move(capture), patience);
 }
 

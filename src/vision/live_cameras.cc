@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include "softforce/base/input_error.h"
 #include "vision/camera_stream.h"
+#include "vision/live_checks.h"
 #include "vision/pairer.h"
 #include "vision/stamp_clock.h"
 
@@ -20,39 +21,9 @@ namespace {
 
 using base::InputError;
 
-constexpr double kFirstPause = 0.25;  // s, before a lost camera is opened again; doubles
-constexpr double kSilence = 5;        // s without a set, before that is worth a message
-
-void CheckCameras(const std::vector<LiveCamera>& cameras) {
-  if (cameras.empty()) {
-    throw InputError("cameras", "there is none", "Name one with --camera NAME=SOURCE.");
-  }
-  std::set<std::string> names, sources;
-  for (const LiveCamera& camera : cameras) {
-    if (camera.name.empty() || !names.insert(camera.name).second) {
-      throw InputError("cameras",
-                       camera.name.empty()
-                           ? fmt::format("the camera of \"{}\" has no name", camera.source)
-                           : fmt::format("two cameras are called \"{}\"", camera.name),
-                       "Give each camera a name of its own.");
-    }
-    if (!sources.insert(camera.source).second) {
-      throw InputError("cameras",
-                       fmt::format("two cameras have the same source \"{}\"", camera.source),
-                       "Each camera needs a source of its own.");
-    }
-    if (!IsLive(camera.source)) {
-      throw InputError(
-          fmt::format("camera \"{}\"", camera.name),
-          fmt::format("\"{}\" is no live camera, but stands for a file", camera.source),
-          "Give a device (/dev/video0), a URL (rtsp://..., http://..., tcp://...) or a GStreamer "
-          "pipeline (with \" ! \" between its elements).");
-    }
-    if (!std::isfinite(camera.time_offset_s)) {
-      throw InputError(fmt::format("camera \"{}\"", camera.name), "its time offset is no number");
-    }
-  }
-}
+constexpr double kFirstPause = 0.25;            // s, before a lost camera is opened again; doubles
+constexpr std::chrono::milliseconds kLook(50);  // whether somebody asked to stop
+constexpr double kSilence = 5;                  // s without a set, before that is worth a message
 
 std::string WrongSize(cv::Size got, cv::Size expected) {
   return fmt::format("its pictures are {}x{} px, expected {}x{} px", got.width, got.height,
@@ -201,6 +172,7 @@ void LiveCameras::State::Lost(Channel* channel, const std::string& problem) {
   channel->report.state = CameraReport::State::kAway;
   channel->arrivals_s.clear();
   channel->clock.Restart();
+  pairer->Forget(channel->index);
   changed.notify_all();
 }
 
@@ -236,10 +208,14 @@ void LiveCameras::State::Start() {
     channel.thread = std::thread([this, &channel] { Serve(&channel); });
   }
   std::unique_lock lock(mutex);
-  changed.wait(lock, [&] {
-    const auto known = [](const Channel& c) { return c.started || !c.failure.empty(); };
-    return std::all_of(channels.begin(), channels.end(), known);
-  });
+  const auto is_known = [](const Channel& c) { return c.started || !c.failure.empty(); };
+  while (!std::all_of(channels.begin(), channels.end(), is_known)) {
+    if (options.stop != nullptr && *options.stop) {  // Next() will give nothing
+      stop = true;
+      return;
+    }
+    changed.wait_for(lock, kLook);
+  }
   for (size_t c = 0; c < cameras.size(); ++c) {
     const Channel& channel = channels[c];
     if (!channel.started) {
@@ -263,22 +239,6 @@ void LiveCameras::State::End() {
   for (Channel& channel : channels) {
     if (channel.thread.joinable()) channel.thread.join();
   }
-}
-
-void LiveOptions::Check() const {
-  const auto require = [](bool holds, const char* option, const char* range) {
-    if (!holds) throw InputError(option, std::string("must be ") + range);
-  };
-  require(tolerance_s > 0, "--tolerance", "more than 0 s");
-  require(max_wait_s > 0 && max_wait_s <= 10, "--max-wait", "more than 0 s, 10 s at most");
-  require(queue >= 1 && queue <= 1000, "--queue", "1 to 1000 sets of pictures");
-  require(open_timeout_s > 0, "--open-timeout", "more than 0 s");
-  require(stall_s > 0, "--stall", "more than 0 s");
-  require(settle_s > 0 && settle_s <= 60, "--settle", "more than 0 s, 60 s at most");
-  require(longest_pause_s > 0, "longest pause", "more than 0 s");
-  require(rate_hz >= 0, "--rate", "0 Hz or more");
-  require(pixel_format.empty() || pixel_format.size() == 4, "--pixel-format",
-          "four letters, as MJPG or YUYV");
 }
 
 LiveCameras::LiveCameras(std::vector<LiveCamera> cameras, const LiveOptions& options)

@@ -40,7 +40,7 @@ std::vector<LiveCamera> LiveCamerasOf(const camera::Rig& rig,
     }
     const auto offset = time_offsets_s.find(camera.name);
     cameras.push_back({camera.name, source->second, cv::Size(camera.width, camera.height),
-                       offset == time_offsets_s.end() ? 0 : offset->second});
+                       offset == time_offsets_s.end() ? camera.time_offset_s : offset->second});
   }
   return cameras;
 }
@@ -62,7 +62,7 @@ std::unique_ptr<FrameSource> OpenFrameSource(const camera::Rig& rig,
                                  *live, sources.at(*live), *file, sources.at(*file)),
                      "Give live cameras for all, or files for all.");
   }
-  if (live == nullptr) return std::make_unique<Recording>(rig, files);
+  if (live == nullptr) return std::make_unique<Recording>(rig, files, time_offsets_s);
   return std::make_unique<LiveCameras>(LiveCamerasOf(rig, sources, time_offsets_s), options);
 }
 

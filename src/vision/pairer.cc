@@ -34,6 +34,13 @@ void Pairer::Add(size_t camera, TimedPicture picture, double period_s) {
   }
 }
 
+void Pairer::Forget(size_t camera) {
+  Camera& own = cameras_[camera];
+  own.unpaired += static_cast<int64_t>(own.waiting.size());
+  own.waiting.clear();
+  own.last_s = -INFINITY;
+}
+
 std::optional<std::vector<TimedPicture>> Pairer::Take() {
   const double tolerance = tolerance_s();
   while (true) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <opencv2/core.hpp>
@@ -25,10 +26,14 @@ class Pairer {
   // camera's pictures; the tolerance is at most half of the shortest.
   void Add(size_t camera, TimedPicture picture, double period_s);
 
+  // A camera begins anew: what waits of it has no partners, and its times may be any.
+  void Forget(size_t camera);
+
   // The next complete set, one picture per camera, if there is one.
   std::optional<std::vector<TimedPicture>> Take();
 
   double tolerance_s() const;  // that is in force
+  size_t waiting(size_t camera) const { return cameras_[camera].waiting.size(); }
   int64_t unpaired(size_t camera) const { return cameras_[camera].unpaired; }
   int64_t paired() const { return paired_; }
 

@@ -19,6 +19,12 @@ class PictureStream {
   virtual double camera_time_s() const = 0;   // of the last picture itself
   virtual void Rewind() = 0;
 
+  // s, between two pictures; 0 if that is not known.
+  virtual double period_s() const = 0;
+
+  // s, by which `camera_time_s` was already corrected when it was recorded.
+  virtual double time_offset_s() const { return 0; }
+
   // Whether another camera's pictures may be one more or fewer: the recorder of both was killed.
   virtual bool unfinished() const { return false; }
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "softforce/base/input_error.h"
 
 namespace softforce::vision {
@@ -9,7 +11,8 @@ namespace softforce::vision {
 RecordedCamera::RecordedCamera(std::filesystem::path folder)
     : folder_(std::move(folder)),
       times_(ReadTimes(folder_)),
-      unfinished_(!IsComplete(folder_ / "..")) {
+      unfinished_(!IsComplete(folder_ / "..")),
+      time_offset_s_(RecordedTimeOffset(folder_)) {
   CheckSegments();
   if (times_.empty()) {
     throw base::InputError(folder_.string(), "holds no whole picture",
@@ -57,6 +60,18 @@ std::optional<cv::Mat> RecordedCamera::Next() {
   last_ = time;
   ++next_;
   return picture->grey;
+}
+
+// The median: sets are missing here and there.
+double RecordedCamera::period_s() const {
+  std::vector<double> intervals;
+  for (size_t i = 1; i < times_.size(); ++i) {
+    intervals.push_back(times_[i].camera_time_s - times_[i - 1].camera_time_s);
+  }
+  if (intervals.empty()) return 0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return std::max(0.0, *middle);
 }
 
 void RecordedCamera::Rewind() {

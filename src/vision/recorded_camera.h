@@ -26,6 +26,8 @@ class RecordedCamera : public PictureStream {
   double camera_time_s() const override { return last_.camera_time_s; }
   void Rewind() override;
   bool unfinished() const override { return unfinished_; }
+  double period_s() const override;
+  double time_offset_s() const override { return time_offset_s_; }
 
  private:
   void CheckSegments();
@@ -33,6 +35,7 @@ class RecordedCamera : public PictureStream {
   std::filesystem::path folder_;
   std::vector<RecordedTime> times_;
   bool unfinished_;
+  double time_offset_s_;
   cv::Size size_;
   size_t next_ = 0;
   RecordedTime last_;

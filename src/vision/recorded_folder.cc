@@ -1,6 +1,7 @@
 #include "vision/recorded_folder.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <charconv>
 #include <fstream>
@@ -74,6 +75,19 @@ std::vector<RecordedTime> ReadTimes(const std::filesystem::path& camera_folder) 
     from = to;
   }
   return times;
+}
+
+double RecordedTimeOffset(const std::filesystem::path& camera_folder) {
+  const auto folder = camera_folder.lexically_normal();  // "take1/left/" has no file name
+  const std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename();
+  try {
+    const YAML::Node manifest = YAML::LoadFile((camera_folder / ".." / kManifest).string());
+    for (const YAML::Node& camera : manifest["cameras"]) {
+      if (camera["name"].as<std::string>("") == name) return camera[kTimeOffsetKey].as<double>(0);
+    }
+  } catch (const YAML::Exception&) {  // as a folder that was copied without it
+  }
+  return 0;
 }
 
 bool IsComplete(const std::filesystem::path& recording_folder) {

@@ -3,19 +3,18 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
 #include <fstream>
+#include <future>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include "softforce/base/input_error.h"
-#include "softforce/base/pending_file.h"
 #include "vision/disk_sync.h"
+#include "vision/new_recording.h"
 #include "vision/recorded_folder.h"
 #include "vision/segment_writer.h"
 
@@ -25,32 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
-
-void CheckCameras(const std::vector<std::string>& cameras) {
-  std::set<std::string> seen;
-  for (const std::string& camera : cameras) {
-    const bool is_folder_name = !camera.empty() && camera != "." && camera != ".." &&
-                                camera.find('/') == std::string::npos && camera[0] != '-';
-    if (!is_folder_name || !seen.insert(camera).second) {
-      throw base::InputError("record",
-                             fmt::format(is_folder_name ? "two cameras are called \"{}\""
-                                                        : "\"{}\" cannot name a camera's folder",
-                                         camera),
-                             "Give each camera a name of its own, of letters, digits and _.");
-    }
-  }
-  if (cameras.empty()) {
-    throw base::InputError("record", "there is no camera", "Name one with --camera NAME=SOURCE.");
-  }
-}
-
-void MakeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error) return;
-  throw base::InputError(folder.string(), "the folder cannot be made: " + error.message(),
-                         "Choose another.");
-}
 
 // A camera's folder, and what is open in it.
 struct CameraFiles {
@@ -82,6 +55,8 @@ struct Recorder::State {
 
   void Work();
   void Write(const FrameSet& frame);
+  int64_t Compress(const FrameSet& frame, double time_s);
+  bool Full(double newest_s) const;
   void NextSegment();
   void EndSegment();
   void WriteManifest(bool complete);
@@ -90,29 +65,7 @@ struct Recorder::State {
 };
 
 void Recorder::State::WriteManifest(bool complete) {
-  base::PendingFile file(folder / kManifest);
-  {
-    std::ofstream out(file.temporary());
-    out << "softforce_recording: 1\n";
-    out << "started: " << started << "\n";
-    out << "codec: magicyuv, grey, lossless\n";
-    out << fmt::format("segment: {} s\n", options.segment_s);
-    out << "cameras:\n";
-    for (size_t c = 0; c < names.size(); ++c) {
-      const std::string source = c < options.sources.size() ? options.sources[c] : "";
-      std::string quoted;
-      for (const char letter : source) {
-        quoted += letter == '\'' ? "''" : std::string(1, letter);
-      }
-      out << fmt::format("  - {{name: {}, source: '{}'}}\n", names[c], quoted);
-    }
-    out << fmt::format("frames: {}\n", report.written);
-    out << fmt::format("dropped: {}\n", report.dropped);
-    out << (complete ? kCompleteLine : "complete: false") << "\n";
-  }
-  SyncToDisk(file.temporary());
-  file.Commit();
-  SyncToDisk(folder);
+  vision::WriteManifest(folder, {names, started, options, report, complete});
 }
 
 void Recorder::State::NextSegment() {
@@ -131,6 +84,34 @@ void Recorder::State::EndSegment() {
   }
 }
 
+// The cameras' pictures side by side, each on a thread: on a busy computer one thread alone would
+// not get the time to keep up.
+int64_t Recorder::State::Compress(const FrameSet& frame, double time_s) {
+  std::vector<std::future<int64_t>> written;
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    const cv::Mat& picture = frame.pictures.at(c);
+    const auto launch = c + 1 < cameras.size() ? std::launch::async : std::launch::deferred;
+    written.push_back(std::async(launch, [this, c, picture, time_s] {
+      CameraFiles& camera = cameras[c];
+      if (!camera.segment) {
+        camera.segment =
+            std::make_unique<SegmentWriter>(SegmentFile(camera.folder, segment), picture.size());
+      }
+      return camera.segment->Add(picture, time_s);
+    }));
+  }
+  int64_t bytes = 0;
+  // The last one first, on this thread. Whichever throws, the others are waited for.
+  for (auto each = written.rbegin(); each != written.rend(); ++each) bytes += each->get();
+  return bytes;
+}
+
+bool Recorder::State::Full(double newest_s) const {
+  if (queue.empty()) return false;
+  return static_cast<int>(queue.size()) >= options.queue ||
+         newest_s - queue.front().time_s > options.longest_wait_s;
+}
+
 void Recorder::State::Write(const FrameSet& frame) {
   const auto start = Clock::now();
   const int number = static_cast<int>(report.written);
@@ -140,16 +121,7 @@ void Recorder::State::Write(const FrameSet& frame) {
     NextSegment();
     segment_start_s = time_s;
   }
-  int64_t bytes = 0;
-  for (size_t c = 0; c < cameras.size(); ++c) {
-    CameraFiles& camera = cameras[c];
-    const cv::Mat& picture = frame.pictures.at(c);
-    if (!camera.segment) {
-      camera.segment =
-          std::make_unique<SegmentWriter>(SegmentFile(camera.folder, segment), picture.size());
-    }
-    bytes += camera.segment->Add(picture, time_s);
-  }
+  const int64_t bytes = Compress(frame, time_s);
   // Only now: a line in times.csv means that the pictures of all cameras are there.
   for (size_t c = 0; c < cameras.size(); ++c) {
     const double camera_s =
@@ -209,6 +181,7 @@ void RecorderOptions::Check() const {
   if (!(segment_s >= 0.1 && segment_s <= 3600)) {
     throw base::InputError("--segment", fmt::format("got {} s, must be 0.1 s to 1 h", segment_s));
   }
+  if (!(longest_wait_s > 0)) throw base::InputError("longest wait", "must be more than 0 s");
   if (queue < 1) throw base::InputError("--queue", "must be 1 or more sets of pictures");
 }
 
@@ -222,26 +195,11 @@ std::string RecorderReport::BriefReport() const {
   return text;
 }
 
-void RefuseUsedFolder(const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::exists(folder, ignored)) return;
-  if (!fs::is_directory(folder, ignored)) {
-    throw base::InputError(folder.string(), "is a file, expected a folder to record to",
-                           "Choose another.");
-  }
-  if (fs::is_empty(folder, ignored)) return;
-  throw base::InputError(folder.string(),
-                         fs::exists(folder / kManifest, ignored)
-                             ? "already holds a recording, which is not overwritten"
-                             : "is not empty; a recording gets a folder of its own",
-                         "Choose another, or remove it.");
-}
-
 Recorder::Recorder(const fs::path& folder, const std::vector<std::string>& cameras,
                    const RecorderOptions& options)
     : state_(new State) {
   options.Check();
-  CheckCameras(cameras);
+  CheckFolderNames(cameras);
   RefuseUsedFolder(folder);
   State& state = *state_;
   state.folder = folder;
@@ -279,14 +237,12 @@ Recorder::~Recorder() {
 void Recorder::Add(const FrameSet& frame) {
   {
     std::unique_lock lock(state_->mutex);
-    const auto full = [&] {
-      return static_cast<int>(state_->queue.size()) >= state_->options.queue;
-    };
+    const auto full = [&] { return state_->Full(frame.time_s); };
     if (state_->options.wait) {
       state_->room.wait(lock, [&] { return state_->error || !full(); });
     }
     if (state_->error) std::rethrow_exception(state_->error);
-    if (full()) {
+    while (full()) {
       state_->queue.pop_front();
       ++state_->report.dropped;
     }

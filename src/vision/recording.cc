@@ -11,6 +11,7 @@
 #include "softforce/base/input_error.h"
 #include "vision/recorded_camera.h"
 #include "vision/video_file.h"
+#include "vision/videos_by_time.h"
 
 namespace softforce::vision {
 namespace {
@@ -36,8 +37,6 @@ void RefuseUnknownCameras(const camera::Rig& rig, const std::vector<Recording::S
                      fmt::format("the rig has no camera \"{}\"; it has:{}", source.camera, names));
   }
 }
-
-using Videos = std::vector<std::unique_ptr<PictureStream>>;
 
 std::unique_ptr<PictureStream> OpenPictures(const std::vector<std::filesystem::path>& files,
                                             size_t c) {
@@ -91,11 +90,39 @@ void CheckSize(const PictureStream& video, const camera::Camera& camera) {
                    "Use the recording's own size, or calibrate the camera at this one.");
 }
 
+// By how much the time stamps of each camera are taken to be late: as told, as the rig says, or, if
+// it does not, as was known when they were recorded.
+std::vector<double> TimeOffsets(const camera::Rig& rig, const Videos& videos,
+                                const std::map<std::string, double>& told) {
+  for (const auto& [name, offset] : told) {
+    if (rig.Find(name)) continue;
+    throw InputError("time offset", fmt::format("the rig has no camera \"{}\"", name));
+  }
+  std::vector<double> offsets_s;
+  for (size_t c = 0; c < videos.size(); ++c) {
+    const camera::Camera& camera = rig.cameras[c];
+    const auto given = told.find(camera.name);
+    const bool rig_says = camera.time_offset_s != 0 || camera.time_offset_sd_s > 0;
+    offsets_s.push_back(given != told.end() ? given->second
+                        : rig_says          ? camera.time_offset_s
+                                            : videos[c]->time_offset_s());
+  }
+  return offsets_s;
+}
+
+bool AllAlike(const std::vector<double>& late_s) {
+  constexpr double kSame = 1e-6;  // s; less is rounding
+  const auto [least, most] = std::minmax_element(late_s.begin(), late_s.end());
+  return *most - *least < kSame;
+}
+
 }  // namespace
 
 struct Recording::State {
   std::vector<std::string> cameras;
-  std::vector<std::unique_ptr<PictureStream>> videos;
+  Videos videos;
+  std::unique_ptr<VideosByTime> by_time;  // null: by number
+  std::vector<double> time_offsets_s;
   int announced = 0;
   std::filesystem::path unfinished;  // a recorded folder whose recorder was killed
   std::atomic<bool> stopped = false;
@@ -106,17 +133,35 @@ struct Recording::State {
   std::string truncation;
   bool told = false;
 
-  // Where one of the videos has no more pictures.
-  void End(const PictureStream& video) {
+  std::optional<FrameSet> NextByNumber();
+
+  // Where one of the videos has no more pictures, having given so many of those that it should.
+  void End(const PictureStream& video, int pictures, int expected) {
     const std::lock_guard lock(mutex);
     ended = true;
-    if (delivered >= announced) return;
+    if (pictures >= expected) return;
     truncation = fmt::format("{}: ended after {} of {} frames: the file was cut off or is damaged",
-                             video.file().string(), delivered, announced);
+                             video.file().string(), pictures, expected);
   }
 };
 
-Recording::Recording(const camera::Rig& rig, const std::vector<Source>& sources)
+std::optional<FrameSet> Recording::State::NextByNumber() {
+  FrameSet frame;
+  for (const auto& video : videos) {
+    std::optional<cv::Mat> picture = video->Next();
+    if (!picture) {
+      End(*video, delivered, announced);
+      return std::nullopt;
+    }
+    frame.pictures.push_back(std::move(*picture));
+    frame.camera_time_s.push_back(video->camera_time_s());
+  }
+  frame.time_s = videos.front()->time_s();
+  return frame;
+}
+
+Recording::Recording(const camera::Rig& rig, const std::vector<Source>& sources,
+                     const std::map<std::string, double>& time_offsets_s)
     : state_(std::make_unique<State>()) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   RefuseUnknownCameras(rig, sources);
@@ -131,27 +176,33 @@ Recording::Recording(const camera::Rig& rig, const std::vector<Source>& sources)
     if (state_->videos.back()->unfinished()) state_->unfinished = files[c] / "..";
   }
   state_->announced = CommonLength(state_->videos);
+  state_->time_offsets_s = TimeOffsets(rig, state_->videos, time_offsets_s);
+  std::vector<double> late_s = state_->time_offsets_s;  // that is, still
+  for (size_t c = 0; c < late_s.size(); ++c) late_s[c] -= state_->videos[c]->time_offset_s();
+  if (AllAlike(late_s)) return;
+  state_->by_time = std::make_unique<VideosByTime>(state_->videos, std::move(late_s));
+  state_->announced = std::max(0, state_->announced - state_->by_time->lag());
 }
 
 Recording::~Recording() = default;
 Recording::Recording(Recording&&) noexcept = default;
 
+const std::vector<double>& Recording::time_offsets_s() const { return state_->time_offsets_s; }
+
 int Recording::announced_frames() const { return state_->announced; }
 
 std::optional<FrameSet> Recording::Next() {
   if (state_->ended || state_->stopped) return std::nullopt;
-  FrameSet frame;
-  frame.frame = state_->delivered;
-  for (const auto& video : state_->videos) {
-    std::optional<cv::Mat> picture = video->Next();
-    if (!picture) {
-      state_->End(*video);
-      return std::nullopt;
+  std::optional<FrameSet> frame =
+      state_->by_time ? state_->by_time->Next() : state_->NextByNumber();
+  if (!frame) {
+    if (state_->by_time) {
+      const PictureStream& video = state_->by_time->ended();
+      state_->End(video, state_->by_time->pictures_of_ended(), video.announced_frames());
     }
-    frame.pictures.push_back(std::move(*picture));
-    frame.camera_time_s.push_back(video->camera_time_s());
+    return std::nullopt;
   }
-  frame.time_s = state_->videos.front()->time_s();
+  frame->frame = state_->delivered;
   const std::lock_guard lock(state_->mutex);
   ++state_->delivered;
   return frame;
@@ -159,6 +210,7 @@ std::optional<FrameSet> Recording::Next() {
 
 void Recording::Rewind() {
   for (const auto& video : state_->videos) video->Rewind();
+  if (state_->by_time) state_->by_time->Rewind();
   const std::lock_guard lock(state_->mutex);
   state_->delivered = 0;
   state_->ended = false;

@@ -30,6 +30,7 @@ class VideoFile : public PictureStream {
   double time_s() const override { return time_s_; }
   double camera_time_s() const override { return time_s_; }
   void Rewind() override;
+  double period_s() const override { return frames_per_second_ > 0 ? 1 / frames_per_second_ : 0; }
 
  private:
   // A decoded picture and what its container says of its time; nothing where OpenCV does not know.

@@ -64,6 +64,18 @@ TEST(RecordCommand, EndsOnCtrlCWithCompleteFiles) {
   EXPECT_GE(FramesIn(folder), 1);
 }
 
+// The camera never gives a picture; waiting for it would end with exit code 2.
+TEST(RecordCommand, EndsOnCtrlCWhileCamerasAreOpened) {
+  const fs::path folder = FreshFolder("record_stop_early") / "take";
+  const ProgramResult result = RunCommand(
+      fmt::format("timeout --foreground --preserve-status --signal=INT 1 '{}' record --camera "
+                  "left='videotestsrc is-live=true ! valve drop=true' --out '{}'",
+                  SOFTFORCE_PROGRAM, folder.string()));
+  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("No set of pictures was recorded"));
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 TEST(RecordCommand, OverwritesNothing) {
   const fs::path folder = FreshFolder("record_over");
   testing::WriteText(folder / "recording.yaml", "mine");
@@ -94,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
     BadInput, RefusedRecord,
     ::testing::Values(
         BadRecord{"Device", "--camera left=/dev/video97", "there is no device /dev/video97"},
+        BadRecord{"NoCamera", "--camera left=/dev/null", "/dev/null is no camera"},
         BadRecord{"Url", "--camera left=tcp://127.0.0.1:9", "cannot be opened: Connection refused"},
         BadRecord{"File", "--camera left=left.mp4", "no live camera"},
         BadRecord{"Twice", "--camera left=0 --camera left=1", "camera \"left\" is given twice"},

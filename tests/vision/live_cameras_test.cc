@@ -43,7 +43,8 @@ std::string At(std::string text, int port) {
 }
 
 const Transport kMotionJpeg{"MotionJpegOverTcp",
-                            "-c:v mjpeg -q:v 3 -f mjpeg tcp://127.0.0.1:PORT?listen=1",
+                            "-c:v mjpeg -q:v 3 -f mjpeg "
+                            "'tcp://127.0.0.1:PORT?listen=1&tcp_nodelay=1'",
                             "tcp://127.0.0.1:PORT"};
 const Transport kMultipart{"MultipartJpegOverHttp",
                            "-c:v mjpeg -q:v 3 -f mpjpeg -listen 1 http://127.0.0.1:PORT/video",
@@ -51,7 +52,7 @@ const Transport kMultipart{"MultipartJpegOverHttp",
 // With time stamps, so that a busy computer cannot make the cameras' rhythm unknowable.
 const Transport kMatroska{"MatroskaOverTcp",
                           "-c:v mjpeg -q:v 3 -f matroska -live 1 -cluster_time_limit 1 "
-                          "tcp://127.0.0.1:PORT?listen=1",
+                          "'tcp://127.0.0.1:PORT?listen=1&tcp_nodelay=1'",
                           "tcp://127.0.0.1:PORT"};
 
 // A rig of two cameras that are served.
@@ -313,6 +314,7 @@ TEST(LiveCamerasRefusal, NamesACameraThatCannotBeOpened) {
   EXPECT_THAT(RefusalOf({{"left", "/dev/video97", {}, 0}}),
               HasSubstr("there is no device /dev/video97"));
   EXPECT_THAT(RefusalOf({{"left", "97", {}, 0}}), HasSubstr("there is no device /dev/video97"));
+  EXPECT_THAT(RefusalOf({{"left", "/dev/null", {}, 0}}), HasSubstr("/dev/null is no camera"));
   EXPECT_THAT(RefusalOf({{"left", "nosuchelement ! identity", {}, 0}}), HasSubstr("nosuchelement"));
 }
 

@@ -48,6 +48,16 @@ TEST(Pairer, LeavesOutWhatHasNoPartnerAndCountsIt) {
   EXPECT_EQ(pairer.paired(), 8);
 }
 
+TEST(Pairer, TakesACameraThatBeginsAnewWithOtherTimes) {
+  Pairer pairer(2, 5e-3, 10);
+  pairer.Add(1, Numbered(0, 1000, 0), kPeriod);  // a stamp far off the mark
+  pairer.Forget(1);
+  pairer.Add(0, Numbered(1, kPeriod, kPeriod), kPeriod);
+  pairer.Add(1, Numbered(1, kPeriod, kPeriod), kPeriod);
+  EXPECT_TRUE(pairer.Take());
+  EXPECT_EQ(pairer.unpaired(1), 1);
+}
+
 TEST(Pairer, NeedsAPictureOfEveryCamera) {
   Pairer pairer(3, 5e-3, 10);
   pairer.Add(0, Numbered(0, 0, 0), kPeriod);

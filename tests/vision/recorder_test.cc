@@ -51,6 +51,7 @@ void Record(const fs::path& folder, int frames, double segment_s = 0.2) {
   RecorderOptions options;
   options.segment_s = segment_s;
   options.queue = frames + 1;  // nothing is dropped here
+  options.longest_wait_s = 1e9;
   Recorder recorder(folder, kCameras, options);
   for (int k = 0; k < frames; ++k) recorder.Add(SetOf(k));
   recorder.Finish();
@@ -135,6 +136,24 @@ TEST(Recorder, CountsWhatItCannotWriteInTime) {
   EXPECT_EQ(Play(folder).announced_frames(), report.written);
 }
 
+// What a kill can cost is bounded in time, at whatever rate pictures come.
+TEST(Recorder, KeepsNoSetWaitingForLong) {
+  RecorderOptions options;
+  options.queue = 1000;
+  options.longest_wait_s = 0.25;
+  Recorder recorder(TempFolder() / "recorded", kCameras, options);
+  FrameSet set = SetOf(0);
+  for (auto& picture : set.pictures) picture = NoisePicture(0, 0, {1280, 1024});
+  for (int k = 0; k < 200; ++k) {  // far faster than they can be compressed
+    set.time_s = 0.1 * k;
+    recorder.Add(set);
+    EXPECT_LE(recorder.Report().queued, 3);  // those of 0.25 s
+  }
+  recorder.Finish();
+  EXPECT_EQ(recorder.Report().written + recorder.Report().dropped, 200);
+  EXPECT_GT(recorder.Report().dropped, 0);
+}
+
 std::string RefusalOf(const fs::path& folder, const std::vector<std::string>& cameras) {
   try {
     Recorder recorder(folder, cameras);
@@ -173,6 +192,9 @@ TEST(RecorderRefusal, NamesOptionsOutOfRange) {
   EXPECT_THROW(options.Check(), base::InputError);
   options = {};
   options.queue = 0;
+  EXPECT_THROW(options.Check(), base::InputError);
+  options = {};
+  options.longest_wait_s = 0;
   EXPECT_THROW(options.Check(), base::InputError);
 }
 

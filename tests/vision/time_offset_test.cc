@@ -92,6 +92,34 @@ TEST(TimeOffset, SaysThatMarkersHardlyMove) {
   EXPECT_EQ(Estimate(scene).status, TimeOffset::Status::kTooLittleMotion);
 }
 
+// Cameras are calibrated to some tenths of a pixel.
+TEST(TimeOffset, IsNotLedAstrayByAnErrorOfTheRig) {
+  const camera::Rig rig = testing::MakeStereoRig();
+  std::vector<TrackPair> tracks = TracksOf(rig, {0.0137, 0.1});
+  for (size_t m = 0; m < tracks.size(); ++m) {
+    const double error_px = m % 2 == 0 ? 0.8 : 0.3;
+    for (TimedPixel& seen : tracks[m].in_second) seen.pixel.y() += error_px;
+  }
+  const TimeOffset found = EstimateTimeOffset(rig, 0, 1, tracks);
+  ASSERT_TRUE(found.ok()) << found.BriefReport();
+  EXPECT_NEAR(found.offset_s, 0.0137, 4 * found.sd_s);
+}
+
+// An error of the rig could not be told from an offset.
+TEST(TimeOffset, SaysThatAMotionOneWayDoesNotDo) {
+  const camera::Rig rig = testing::MakeStereoRig();
+  std::vector<TrackPair> tracks(1);
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.1);  // px
+  for (int k = 0; k < 120; ++k) {
+    const double t = k / kRate;
+    const auto seen = testing::ProjectInto(rig, {0.01, -0.02 + 0.01 * t, 0.45});
+    tracks[0].in_first.push_back({t, seen[0].pixel});
+    tracks[0].in_second.push_back({t + 0.01, seen[1].pixel + Eigen::Vector2d(0, noise(random))});
+  }
+  EXPECT_EQ(EstimateTimeOffset(rig, 0, 1, tracks).status, TimeOffset::Status::kTooLittleMotion);
+}
+
 TEST(TimeOffset, SaysThatItLiesOutsideOfTheSearch) {
   TimeOffsetOptions options;
   options.longest_s = 0.02;

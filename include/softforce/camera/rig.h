@@ -15,6 +15,8 @@ struct Camera {
   int width = 0, height = 0;  // px
   Lens lens;
   Eigen::Isometry3d T_camera_rig = Eigen::Isometry3d::Identity();
+  // s, by which its time stamps are late; standard deviation, 0 where it is not known.
+  double time_offset_s = 0, time_offset_sd_s = 0;
 };
 
 // Cameras that stand fixed to each other.

@@ -25,7 +25,8 @@ struct RegisterOptions {
   std::filesystem::path pairs;  // file of kPairs
   int frame = 0;                // the first, or for markers the only one to look at
   int fiducial_frames = 10;
-  std::map<std::string, std::string> sources;  // camera → file or live source; not the scene's
+  std::map<std::string, std::string> sources;    // camera → file or live source; not the scene's
+  std::map<std::string, double> time_offsets_s;  // camera → s; not the rig's
   vision::LiveOptions live;
   calibration::MatchOptions match;
   calibration::PairOptions typed;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -32,6 +33,8 @@ struct LiveOptions {
   // Of devices (V4L2): what is asked of the driver; 0 and empty: what it does by itself.
   double rate_hz = 0;
   std::string pixel_format;  // four letters, as "MJPG"
+  // Set from outside while cameras are being opened: leave it, there will be no sets.
+  const std::atomic<bool>* stop = nullptr;
 
   void Check() const;  // throws InputError naming the option
 };
@@ -44,7 +47,8 @@ struct LiveCamera {
 };
 
 // The cameras of a rig in its order, each with its source and the size that it was calibrated for.
-// Throws InputError if a camera has no source, or a source no camera. `time_offsets_s`: camera → s.
+// Throws InputError if a camera has no source, or a source no camera. `time_offsets_s` (camera → s)
+// are taken instead of the rig's own.
 std::vector<LiveCamera> LiveCamerasOf(const camera::Rig& rig,
                                       const std::map<std::string, std::string>& sources,
                                       const std::map<std::string, double>& time_offsets_s = {});

@@ -11,10 +11,15 @@ namespace softforce::vision {
 
 struct RecorderOptions {
   double segment_s = 1;  // length of a video file; what a power failure can cost
-  int queue = 16;        // sets that wait to be compressed; when it is full, the oldest is dropped
-  bool wait = false;     // instead, Add() waits until there is room: every set is in the files
-  std::vector<std::string>
-      sources;  // where each camera's pictures come from, for the folder's note
+  // Sets that wait to be compressed: at most so many, and none that is older than the newest by
+  // more than this time, which is what a kill can cost. The oldest are dropped.
+  int queue = 16;
+  double longest_wait_s = 0.25;
+  bool wait = false;  // instead, Add() waits until there is room: every set is in the files
+  // For the folder's note, of each camera: where its pictures come from, and by how much (s) its
+  // times were corrected, see LiveCamera::time_offset_s. A replay corrects what is missing.
+  std::vector<std::string> sources;
+  std::vector<double> time_offsets_s;
 
   void Check() const;  // throws InputError naming the option
 };

@@ -44,7 +44,7 @@ struct TimeOffset {
   double offset_s = NAN;
   double sd_s = NAN;    // standard deviation, from the misfit that is left
   double rms_px = NAN;  // of that misfit, per picture of a marker, across the epipolar line
-  int used = 0;         // pictures of markers
+  int used = 0;         // pictures of markers, which count
 
   bool ok() const { return status == Status::kOk; }
   std::string BriefReport() const;  // one line
@@ -53,8 +53,11 @@ struct TimeOffset {
 // The constant offset between two cameras' time stamps from markers that move: the second camera's
 // tracks are interpolated (in the picture, by cubics) to the first one's times less the offset, and
 // the sum of squared distances to the epipolar lines is made least over the offset, robustly, from
-// the best of a grid. Only motion across the epipolar lines tells anything: for cameras side by
-// side, up and down. Too little of it is an answer, not an error: read `status`.
+// the best of a grid. Each track may be off the lines by a constant, and by a share of its way, of
+// its own, since cameras are calibrated to some tenths of a pixel only, which a motion that goes
+// one way could not tell from an offset. Only motion across the epipolar lines that changes its
+// speed tells anything: for cameras side by side, up and down, to and fro. Too little of it is an
+// answer, not an error: read `status`.
 TimeOffset EstimateTimeOffset(const camera::Rig& rig, int first, int second,
                               const std::vector<TrackPair>& tracks,
                               const TimeOffsetOptions& options = {});
