@@ -1,9 +1,9 @@
 // How well markers are located in rendered stereo pictures, and whether the covariances say so: a
-// flat plate of dots or tags, askew, some 0.45 m before two cameras (f = 1400 px, 150 mm apart);
-// see docs/detection.md. Prints Markdown tables. The truth is the renderer's geometry, which shares
-// no code with the detectors.
+// flat plate of dots or tags, askew, some 0.45 m before two cameras (f = 1400 px, 150 mm apart).
+// Prints Markdown tables. The truth is the renderer's geometry, which shares no code with the
+// detectors. PIXEL_FLOOR (px) is added to the reported covariances, as a run does; 0 unless given.
 //
-//   build/release/benchmarks/detection_accuracy [POSES]
+//   build/release/benchmarks/detection_accuracy [POSES [PIXEL_FLOOR]]
 #include <fmt/format.h>
 
 #include <cmath>
