@@ -15,10 +15,18 @@ namespace {
 // worth minutes of following the body there.
 constexpr double kAbsurd = 5;
 
+// To explain a wrong model, least squares may ask for forces that crush the body. The solver gives up
+// there early, and the estimator tries smaller steps: thousands of factorisations are saved, and no
+// answer is lost that the solver's own limits would find.
+constexpr int kMaxIterations = 15;
+constexpr int kMaxLoadHalvings = 1;
+
 // The method of the paper, on the given mesh.
 void RunPlain(const Model& model, const Views& views, InexactCase* result) {
   fem::StaticSolverOptions options;
   options.tolerance = kTolerance;
+  options.max_iterations = kMaxIterations;
+  options.max_load_halvings = kMaxLoadHalvings;
   fem::StaticSolver solver(model.body, result->layout.name, options);
   estimation::EstimatorOptions least_squares = LeastSquares(kFinest);
   least_squares.max_staleness = estimation::EstimatorOptions().max_staleness;
