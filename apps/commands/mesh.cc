@@ -49,6 +49,7 @@ std::vector<std::filesystem::path> FilesOf(const scene::Scene& scene) {
   std::vector<std::filesystem::path> files{scene.file, scene.mesh.file, scene.cameras.rig};
   if (scene.actuation_file) files.push_back(*scene.actuation_file);
   for (const auto& [camera, source] : scene.cameras.sources) files.emplace_back(source);
+  if (scene.measured) files.insert(files.end(), {scene.measured->file, scene.measured->rig});
   return files;
 }
 

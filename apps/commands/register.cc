@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -51,11 +52,19 @@ std::filesystem::path Target(const RegisterArguments& arguments) {
   }
   if (!arguments.in_place && arguments.out.empty()) return {};
   const scene::Scene scene = scene::LoadScene(arguments.scene, scene::SceneFiles::kNone);
+  const std::filesystem::path rig = scene.measured ? scene.measured->rig : scene.cameras.rig;
+  if (arguments.in_place && rig.empty()) {
+    throw base::InputError("--in-place", "the scene names no file for it under \"measured: rig\"",
+                           "Write for example: measured: {file: take.csv, rig: capture.yaml}");
+  }
   const std::filesystem::path target =
-      arguments.in_place ? scene.cameras.rig : std::filesystem::path(arguments.out);
+      arguments.in_place ? rig : std::filesystem::path(arguments.out);
   std::error_code ignored;
-  scene::CheckCanHoldPlace(scene.cameras.rig, target);
-  for (const auto& input : {scene.file, scene.mesh.file, std::filesystem::path(arguments.pairs)}) {
+  if (!scene.measured) scene::CheckCanHoldPlace(rig, target);
+  const std::filesystem::path points =
+      scene.measured ? scene.measured->file : std::filesystem::path();
+  for (const auto& input :
+       {scene.file, scene.mesh.file, points, std::filesystem::path(arguments.pairs)}) {
     if (!input.empty() && std::filesystem::equivalent(target, input, ignored)) {
       throw base::InputError("-o " + target.string(), "would replace the input " + input.string(),
                              "Give another name.");
@@ -117,10 +126,13 @@ int Register(RegisterArguments* arguments) {
   fmt::print("{}", report.FullReport());
   if (*options.stop) return 1;
   if (!target.empty()) {
-    scene::WritePlacedRig(report.rig_file,
-                          {report.pose.T_rig_robot, report.pose.covariance,
-                           fmt::format("found {}\n{}", report.how, report.Spread())},
-                          target);
+    const scene::RigPlace place{report.pose.T_rig_robot, report.pose.covariance,
+                                fmt::format("found {}\n{}", report.how, report.Spread())};
+    if (std::isfinite(report.rms)) {
+      scene::WritePlace(place, target);  // motion capture has no cameras to keep
+    } else {
+      scene::WritePlacedRig(report.rig_file, place, target);
+    }
     fmt::print("\nWritten: {}\n", target.string());
   }
   return 0;
@@ -131,7 +143,7 @@ int Register(RegisterArguments* arguments) {
 Command AddRegister(CLI::App* program) {
   auto arguments = std::make_shared<RegisterArguments>();
   CLI::App* app = program->add_subcommand(
-      "register", "Find where the rig of cameras stands in the robot's frame");
+      "register", "Find where the cameras, or motion capture, stand in the robot's frame");
   app->add_option("scene", arguments->scene, "Scene file (scene.yaml)")->required();
   app->add_option("--from", arguments->from,
                   "What to find it from: fiducials (tags on the base), markers (of the body, "

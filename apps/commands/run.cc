@@ -140,6 +140,10 @@ Command AddRun(CLI::App* program) {
   app->add_option("--force-walk", arguments->force_walk,
                   "How far a force component may go from one frame to the next (standard "
                   "deviation), as \"0.05 N\": smooths noise; default: any way");
+  app->add_option("--max-markers", arguments->options.tracker.max_markers,
+                  "Estimate from so many markers in each frame, those that tell most about the "
+                  "forces; 0: from all")
+      ->capture_default_str();
   app->add_option(
          "--correct-mesh", arguments->correct_mesh,
          "Correct the mesh's own error as far as the once refined mesh shows it (refined), "

@@ -41,8 +41,9 @@ class FrameFeed {
   // s, by which the time stamps of each camera are taken to be late; after Start().
   std::vector<double> TimeOffsets() const;
 
-  int expected_frames() const;                                       // 0 if the end is not known
-  vision::SourceReport Report() const { return source_->Report(); }  // from any thread
+  int announced_frames() const { return source_->announced_frames(); }  // of all that there are
+  int expected_frames() const;                                          // 0 if the end is not known
+  vision::SourceReport Report() const { return source_->Report(); }     // from any thread
   std::optional<vision::RecorderReport> Recorded() const;
   std::vector<std::filesystem::path> Inputs() const;
 

@@ -7,12 +7,11 @@
 #include <algorithm>
 
 #include "pipeline/known_states.h"
+#include "pipeline/marker_source.h"
 #include "pipeline/open_recording.h"
 #include "pipeline/refusals.h"
-#include "pipeline/registration.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/progress.h"
-#include "softforce/scene/rig_file.h"
 
 namespace softforce::pipeline {
 namespace {
@@ -109,23 +108,20 @@ class Job {
   Job(const std::filesystem::path& scene_file, const IdentifyOptions& options)
       : options_(options),
         scene_(ToFollow(scene::LoadScene(scene_file), options.unknowns)),
-        rig_(scene::LoadRig(scene_.cameras.rig)),
-        sources_(ProtectedSources()),
         weights_(ParseWeights(options.weights, scene_)),
-        // All frames asked for must be there, so the last one is looked for.
-        recording_(OpenRecording(scene_, rig_, sources_, LastFrame(weights_), "--weights")),
+        source_options_(SourceOptions()),
+        source_(OpenSource()),
         world_(BuildWorld(scene_)),
         unknowns_(UnknownsOf(scene_, world_.mesh(), options)),
-        detector_(scene_),
-        standing_(FindRig(scene_, rig_, detector_,
-                          FirstFramesOf(&recording_, options.registration_frames))),
+        standing_(source_->Start([](const std::string&) {})),
         known_(scene_, world_, weights_) {}
 
   IdentifyReport Finish();
 
  private:
-  // The cameras' files, once it is sure that no file of the job would be replaced.
-  std::vector<vision::Recording::Source> ProtectedSources() const;
+  void RefuseToReplaceInputs() const;
+  RunOptions SourceOptions() const;
+  std::unique_ptr<MarkerSource> OpenSource() const;
   bool Stopped();
   bool PlayRecording();  // false if there is nothing to go on with
   void Warn(const std::string& warning) { report_.warnings.push_back(warning); }
@@ -135,27 +131,45 @@ class Job {
 
   const IdentifyOptions& options_;
   const scene::Scene scene_;
-  const camera::Rig rig_;
-  const std::vector<vision::Recording::Source> sources_;
   const std::vector<KnownWeights> weights_;
-  vision::Recording recording_;
+  const RunOptions source_options_;
+  const std::unique_ptr<MarkerSource> source_;
   const World world_;
   const std::vector<Unknown> unknowns_;
-  const Detector detector_;
   const Standing standing_;
   KnownStates known_;
   IdentifyReport report_;
 };
 
-std::vector<vision::Recording::Source> Job::ProtectedSources() const {
-  std::vector<vision::Recording::Source> sources = SourcesOf(scene_, options_.sources);
-  if (options_.out.empty()) return sources;
-  std::vector<std::filesystem::path> inputs = FilesOf(scene_, sources);
+void Job::RefuseToReplaceInputs() const {
+  if (options_.out.empty()) return;
+  std::vector<std::filesystem::path> inputs = FilesOf(scene_, SourcesOf(scene_, options_.sources));
   // Those of the scene, too, if other videos are used instead.
   for (const auto& [camera, source] : scene_.cameras.sources) inputs.emplace_back(source);
   for (const std::filesystem::path& file : WeightsFiles(options_.weights)) inputs.push_back(file);
   RefuseToReplace(inputs, options_.out, "-o");
-  return sources;
+}
+
+RunOptions Job::SourceOptions() const {
+  RunOptions run;
+  run.out.clear();  // nothing is written
+  run.sources = options_.sources;
+  run.registration_frames = options_.registration_frames;
+  run.watch_rig = 0;
+  return run;
+}
+
+// All frames asked for must be there, so the last one is looked for.
+std::unique_ptr<MarkerSource> Job::OpenSource() const {
+  RefuseToReplaceInputs();
+  RefuseLiveSources(scene_, SourcesOf(scene_, options_.sources));
+  std::unique_ptr<MarkerSource> source = OpenMarkerSource(scene_, source_options_);
+  const int last = source->last_frame(), asked = LastFrame(weights_);
+  if (last < 0 || asked <= last) return source;
+  const std::string has =
+      scene_.measured ? fmt::format("the last in the file is {}", last)  // has numbers of its own
+                      : fmt::format("the recording has {} frames, 0 to {}", last + 1, last);
+  throw base::InputError("--weights", fmt::format("asks for frame {}, but {}", asked, has));
 }
 
 bool Job::Stopped() {
@@ -165,18 +179,19 @@ bool Job::Stopped() {
 }
 
 bool Job::PlayRecording() {
-  Tracker tracker(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
+  Tracker tracker(scene_, world_, source_->rig(), standing_.T_rig_robot, standing_.covariance,
                   options_.tracker);
   base::Progress progress("frames", known_.end_frame());
   int& lost = report_.frames_left_out;
   int odd = 0, used = 0;
   while (true) {
     if (Stopped()) return false;
-    const auto frame = recording_.Next();
-    if (!frame || frame->frame >= known_.end_frame()) break;
+    FrameInWork work;
+    if (!source_->Next(&work) || work.set.frame >= known_.end_frame()) break;
+    source_->Detect(&work);
+    const vision::FrameSet* frame = &work.set;
     // Also frames whose forces are not known: the markers are followed through them.
-    const FrameResult result =
-        tracker.Process(frame->frame, frame->time_s, detector_.Markers(*frame));
+    const FrameResult result = tracker.Process(frame->frame, frame->time_s, work.detections);
     if (options_.show_progress) progress.Update(frame->frame + 1);
     if (!known_.Wants(frame->frame)) continue;
     if (tracker.observations().empty()) {
@@ -199,9 +214,10 @@ bool Job::PlayRecording() {
   if (options_.show_progress) progress.Finish();
   if (lost > kMaxFrameWarnings) Warn(fmt::format("{} frames are left out in all", lost));
   if (odd > kMaxFrameWarnings) Warn(fmt::format("a run finds no forces in {} frames", odd));
-  if (!recording_.truncation().empty()) Warn(recording_.truncation());
+  const std::vector<std::string> short_of = source_->ShortOf();
+  for (const std::string& reason : short_of) Warn(reason);
   if (used == 0) Warn("no frame with known forces could be used");
-  return used > 0 && recording_.truncation().empty();
+  return used > 0 && short_of.empty();
 }
 
 // With the values found, what would a run say of these states?

@@ -20,7 +20,10 @@ std::vector<vision::Recording::Source> SourcesOf(
 
 std::vector<std::filesystem::path> InputsOf(const scene::Scene& scene,
                                             const std::vector<vision::Recording::Source>& sources) {
-  std::vector<std::filesystem::path> inputs{scene.file, scene.mesh.file, scene.cameras.rig};
+  std::vector<std::filesystem::path> inputs{scene.file, scene.mesh.file};
+  if (scene.measured) inputs.push_back(scene.measured->file);
+  const std::filesystem::path rig = scene.measured ? scene.measured->rig : scene.cameras.rig;
+  if (!rig.empty()) inputs.push_back(rig);
   if (scene.actuation_file) inputs.push_back(*scene.actuation_file);
   for (const vision::Recording::Source& source : sources) {
     if (!vision::IsLive(source.file.string())) inputs.push_back(source.file);

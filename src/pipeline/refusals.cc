@@ -9,7 +9,7 @@ namespace softforce::pipeline {
 namespace {
 
 std::vector<std::string> OldResults(const std::filesystem::path& out) {
-  std::vector<std::string> old{"forces.csv",   "markers.csv", "actuation.csv",
+  std::vector<std::string> old{"forces.csv",   "markers.csv", "information.csv", "actuation.csv",
                                "summary.json", "overlay.mp4", "results.pvd"};
   std::error_code ignored;  // a folder that is not there has no old frames
   for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {

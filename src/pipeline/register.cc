@@ -4,8 +4,10 @@
 
 #include "pipeline/frame_feed.h"
 #include "pipeline/register_markers.h"
+#include "pipeline/register_points.h"
 #include "pipeline/registration.h"
 #include "softforce/base/input_error.h"
+#include "softforce/scene/place_rig.h"
 #include "softforce/scene/point_pairs_file.h"
 #include "softforce/scene/rig_file.h"
 
@@ -14,6 +16,41 @@ namespace {
 
 using base::InputError;
 using PairStatus = calibration::PairRegistration::Status;
+
+// `before`: where it stood by the file.
+void Conclude(const scene::Scene& scene, const std::optional<Eigen::Isometry3d>& before,
+              RegisterReport* report) {
+  // To the last bit, for the file.
+  geometry::Matrix6d& covariance = report->pose.covariance;
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+  for (const scene::MarkerPoint& marker : scene.markers.points) {
+    report->body_centre += marker.position / static_cast<double>(scene.markers.points.size());
+  }
+  const Eigen::Isometry3d& T = report->pose.T_rig_robot;
+  report->body_covariance = PointCovariance(T, report->pose.covariance, report->body_centre);
+  if (!before) return;
+  report->moved = (T * report->body_centre - *before * report->body_centre).norm();
+  report->turned = Eigen::AngleAxisd(T.linear().transpose() * before->linear()).angle();
+}
+
+RegisterReport OfCapture(const scene::Scene& scene, const RegisterOptions& options) {
+  if (options.from == RegisterFrom::kFiducials || options.from == RegisterFrom::kPairs ||
+      !options.sources.empty()) {
+    throw InputError(!options.sources.empty()                   ? "--camera"
+                     : options.from == RegisterFrom::kFiducials ? "--from fiducials"
+                                                                : "--pairs",
+                     "goes with cameras, but the scene has motion capture",
+                     "Its frame is found from the labelled markers: --from markers, or nothing.");
+  }
+  RegisterReport report = RegisterByPoints(scene, options);
+  std::optional<Eigen::Isometry3d> before = scene.measured->T_rig_robot;
+  std::error_code ignored;
+  if (std::filesystem::exists(scene.measured->rig, ignored)) {
+    before = scene::LoadPlace(scene.measured->rig).T_rig_robot;
+  }
+  Conclude(scene, before, &report);
+  return report;
+}
 
 class Job {
  public:
@@ -38,10 +75,7 @@ class Job {
       default:
         ByMarkers();
     }
-    // To the last bit, for the file.
-    geometry::Matrix6d& covariance = report_.pose.covariance;
-    covariance = (0.5 * (covariance + covariance.transpose())).eval();
-    Compare();
+    Conclude(scene_, rig_.T_rig_robot, &report_);
     return report_;
   }
 
@@ -139,18 +173,6 @@ class Job {
     }
   }
 
-  void Compare() {
-    for (const scene::MarkerPoint& marker : scene_.markers.points) {
-      report_.body_centre += marker.position / static_cast<double>(scene_.markers.points.size());
-    }
-    const Eigen::Isometry3d& T = report_.pose.T_rig_robot;
-    report_.body_covariance = PointCovariance(T, report_.pose.covariance, report_.body_centre);
-    if (!rig_.T_rig_robot) return;
-    const Eigen::Isometry3d& before = *rig_.T_rig_robot;
-    report_.moved = (T * report_.body_centre - before * report_.body_centre).norm();
-    report_.turned = Eigen::AngleAxisd(T.linear().transpose() * before.linear()).angle();
-  }
-
   const RegisterOptions& options_;
   const scene::Scene scene_;
   const camera::Rig rig_;
@@ -172,6 +194,11 @@ void RegisterOptions::Check() const {
 
 RegisterReport Register(const std::filesystem::path& scene_file, const RegisterOptions& options) {
   options.Check();
+  // Only the type of input is looked at: a file with the place may be still to be written.
+  const scene::Scene scene = scene::LoadScene(scene_file, scene::SceneFiles::kNone);
+  if (scene.measured) {
+    return OfCapture(scene::LoadScene(scene_file, scene::SceneFiles::kToRegister), options);
+  }
   return Job(scene_file, options).Finish();
 }
 
@@ -187,7 +214,12 @@ std::string RegisterReport::Spread() const {
 
 std::string RegisterReport::FullReport() const {
   std::string text =
-      fmt::format("The rig is placed {}, which fit to {:.3f} px.\n", how, pose.rms_px);
+      std::isfinite(rms)
+          ? fmt::format(
+                "The frame of motion capture is placed {}, which fit to {:.3f} "
+                "mm.\n",
+                how, 1e3 * rms)
+          : fmt::format("The rig is placed {}, which fit to {:.3f} px.\n", how, pose.rms_px);
   for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
   text += "\nT_rig_robot, metres:\n";
   for (int i = 0; i < 4; ++i) {
@@ -199,7 +231,7 @@ std::string RegisterReport::FullReport() const {
     text += fmt::format(
         "Against T_rig_robot in {}: the markers' centre is {:.3f} mm from there, turned by {:.3f} "
         "mrad.\n",
-        rig_file.filename().string(), 1e3 * moved, 1e3 * turned);
+        rig_file.empty() ? "the scene" : rig_file.filename().string(), 1e3 * moved, 1e3 * turned);
   }
   return text;
 }

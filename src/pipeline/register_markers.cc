@@ -15,20 +15,6 @@ namespace {
 using base::InputError;
 using Status = calibration::MarkerMatch::Status;
 
-// The body under what its actuators are told, and its weight.
-Eigen::Matrix3Xd UnloadedBody(const World& world, const scene::Scene& scene, double time_s) {
-  fem::Equilibrium state = world.solver->AtRest();
-  fem::LoadCase load = state.load;
-  load.actuation = ActuationAt(scene, time_s);
-  const fem::SolveSummary solved = world.solver->Solve(load, &state);
-  if (!solved.ok()) {
-    throw InputError(scene.file.string(),
-                     "the body has no equilibrium under its actuators: " + solved.BriefReport(),
-                     solved.Advice());
-  }
-  return world.mesh().nodes + state.u;
-}
-
 std::vector<calibration::KnownDot> KnownDots(const scene::Scene& scene, const World& world,
                                              const Eigen::Matrix3Xd& x) {
   std::vector<calibration::KnownDot> dots;
@@ -157,6 +143,19 @@ MarkerPlacement ByTags(const scene::Scene& scene, const camera::Rig& rig,
 }
 
 }  // namespace
+
+Eigen::Matrix3Xd UnloadedBody(const World& world, const scene::Scene& scene, double time_s) {
+  fem::Equilibrium state = world.solver->AtRest();
+  fem::LoadCase load = state.load;
+  load.actuation = ActuationAt(scene, time_s);
+  const fem::SolveSummary solved = world.solver->Solve(load, &state);
+  if (!solved.ok()) {
+    throw InputError(scene.file.string(),
+                     "the body has no equilibrium under its actuators: " + solved.BriefReport(),
+                     solved.Advice());
+  }
+  return world.mesh().nodes + state.u;
+}
 
 MarkerPlacement PlaceByMarkers(const scene::Scene& scene, const camera::Rig& rig,
                                const vision::FrameSet& frame,

@@ -15,6 +15,10 @@ struct MarkerPlacement {
   std::vector<std::string> warnings;
 };
 
+// Where the nodes of the body are under what its actuators are told, and its weight. Throws
+// InputError if it has no equilibrium.
+Eigen::Matrix3Xd UnloadedBody(const World& world, const scene::Scene& scene, double time_s);
+
 // Where the rig stands, from the markers of a body on which nothing but its actuators and its own
 // weight acts, in one frame. Dots are matched without labels; tags have ids. Throws InputError,
 // with advice, if they do not tell it, or not for sure.

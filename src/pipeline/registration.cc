@@ -107,7 +107,8 @@ Eigen::Matrix3d PointCovariance(const Eigen::Isometry3d& T_rig_robot,
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
                  const ShowFirstFrames& show) {
   if (scene.cameras.fiducials.empty()) {
-    if (rig.T_rig_robot) return {*rig.T_rig_robot, rig.T_rig_robot_covariance, std::nullopt, {}};
+    if (rig.T_rig_robot)
+      return {*rig.T_rig_robot, rig.T_rig_robot_covariance, std::nullopt, {}, "rig_file"};
     throw base::InputError(
         scene.file.string() + ": cameras",
         "nothing says where the cameras stand: there are no fiducials here and no T_rig_robot in " +
@@ -139,7 +140,7 @@ Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detect
                            "Check the corners' places and order (TL TR BR BL), and that rig.yaml "
                            "belongs to these cameras.");
   }
-  return {pose.T_rig_robot, pose.covariance, pose, registration.Means()};
+  return {pose.T_rig_robot, pose.covariance, pose, registration.Means(), "fiducials"};
 }
 
 }  // namespace softforce::pipeline

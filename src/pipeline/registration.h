@@ -49,6 +49,7 @@ struct Standing {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // see vision::RigPose
   std::optional<vision::RigPose> from_fiducials;
   std::vector<calibration::MeanTag> fiducials;  // as the cameras saw them
+  std::string from = "rig_file";                // what told it, if not fiducials
 };
 Standing FindRig(const scene::Scene& scene, const camera::Rig& rig, const Detector& detector,
                  const ShowFirstFrames& show);

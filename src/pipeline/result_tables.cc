@@ -52,6 +52,7 @@ ResultTables::ResultTables(const std::filesystem::path& folder, ActuatorKinds ki
       markers_(folder / "markers.csv",
                "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,"
                "residual_mm"),
+      information_(folder / "information.csv", "frame,time_s,marker,used,information_share"),
       kinds_(kinds) {
   if (!kinds.cables && !kinds.chambers) return;
   actuation_.emplace(
@@ -78,9 +79,12 @@ void ResultTables::Add(const FrameResult& result) {
     fmt::print(markers_.stream(), "{},{},{},{},{},{},{}\n", moment, marker.id, Name(marker.status),
                Millimetres(marker.measured), Cell(1e3 * marker.sd, 4), Millimetres(marker.model),
                Cell(1e3 * (marker.measured - marker.model).norm(), 4));
+    fmt::print(information_.stream(), "{},{},{},{}\n", moment, marker.id, marker.used ? 1 : 0,
+               Cell(marker.information, 5));
   }
   forces_.Flush();
   markers_.Flush();
+  information_.Flush();
   if (actuation_) AddActuation(result, moment);
 }
 
@@ -99,6 +103,7 @@ void ResultTables::AddActuation(const FrameResult& result, const std::string& mo
 void ResultTables::Commit() {
   forces_.Commit();
   markers_.Commit();
+  information_.Commit();
   if (actuation_) actuation_->Commit();
 }
 

@@ -32,7 +32,7 @@ struct ActuatorKinds {
   bool chambers = false;
 };
 
-// forces.csv, markers.csv and, for a scene with actuators, actuation.csv.
+// forces.csv, markers.csv, information.csv and, for a scene with actuators, actuation.csv.
 class ResultTables {
  public:
   ResultTables(const std::filesystem::path& folder, ActuatorKinds kinds);
@@ -46,6 +46,7 @@ class ResultTables {
 
   PendingTable forces_;
   PendingTable markers_;
+  PendingTable information_;
   ActuatorKinds kinds_;
   std::optional<PendingTable> actuation_;
 };

@@ -9,8 +9,8 @@
 
 #include "pipeline/error_index.h"
 #include "pipeline/refusals.h"
+#include "pipeline/source_watch.h"
 #include "pipeline/summary_file.h"
-#include "softforce/scene/rig_file.h"
 
 namespace softforce::pipeline {
 namespace {
@@ -18,7 +18,6 @@ namespace {
 // Of a recording; enough that the threads go on drawing while one frame takes long to estimate.
 constexpr int kFramesPerThread = 4;
 constexpr int kLiveFramesWaiting = 2;
-constexpr char kMoved[] = "the rig or the body has moved, and no fiducials are in view";
 
 std::optional<MeshCorrection> CorrectionFor(const scene::Scene& scene, const RunOptions& options) {
   if (options.mesh_aim == MeshAim::kGiven) return std::nullopt;
@@ -34,57 +33,25 @@ TrackerOptions Corrected(TrackerOptions options, const std::optional<MeshCorrect
 
 }  // namespace
 
-// The cameras are opened when all else is ready, for they do not wait.
+// Cameras are opened when all else is ready, for they do not wait.
 RunJob::RunJob(const std::filesystem::path& scene_file, const RunOptions& options)
     : options_(options),
       scene_(scene::LoadScene(scene_file)),
-      rig_(scene::LoadRig(scene_.cameras.rig)),
-      feed_(scene_, rig_, options),
+      source_(OpenMarkerSource(scene_, options)),
       correction_(CorrectionFor(scene_, options)),
       world_(correction_ ? BuildWorld(correction_->scene, correction_->mesh) : BuildWorld(scene_)),
       index_w_(IndexW(world_)),
-      detector_(scene_),
-      standing_(PlaceRig()),
-      tracker_(scene_, world_, rig_, standing_.T_rig_robot, standing_.covariance,
-               Corrected(options.tracker, correction_)),
-      watch_(scene_, rig_, standing_, options.registration_frames,
-             options.show_progress ? base::TellBesideProgress : SourceWatch::Tell()) {}
-
-Standing RunJob::PlaceRig() {
-  feed_.Start(options_.show_progress ? base::TellBesideProgress : SourceWatch::Tell());
-  return FindRig(scene_, rig_, Detector(scene_), feed_.FirstFrames());
-}
-
-// A function of the frame alone: the places are those of the first frames, also after a bump.
-void RunJob::Detect(FrameInWork* frame) {
-  frame->detections = detector_.Markers(frame->set);
-  if (options_.watch_rig == 0 || frame->set.frame % options_.watch_rig != 0) return;
-  frame->fiducials = detector_.FiducialsNear(frame->set, frame->detections, watch_.places());
-}
-
-void RunJob::Estimate(FrameInWork* frame) {
-  const int number = frame->set.frame;
-  const RigWatch::Verdict verdict = watch_.Look(number, frame->fiducials);
-  const Standing& standing = watch_.standing();
-  if (verdict.placed_anew) tracker_.PlaceRig(standing.T_rig_robot, standing.covariance);
-  const bool worth_it = options_.watch_rig == 0 || watch_.WorthATry(frame->detections);
-  const double time_s = frame->set.time_s;
-  frame->result = !verdict.trusted ? tracker_.Skip(number, time_s, verdict.reason)
-                  : !worth_it      ? tracker_.Skip(number, time_s, kMoved)
-                                   : tracker_.Process(number, time_s, frame->detections);
-  frame->T_rig_robot = standing.T_rig_robot;
-  frame->u = tracker_.state().u;
-  if (options_.watch_rig == 0 || !verdict.trusted || !worth_it) return;
-  watch_.LookAtMarkers({number, frame->result.status == estimation::ForceEstimate::Status::kOk,
-                        frame->detections, tracker_.observations(), world_.mesh().nodes, frame->u,
-                        options_.tracker.estimator.common_model_error, standing});
-}
+      standing_(
+          source_->Start(options.show_progress ? base::TellBesideProgress : SourceWatch::Tell())),
+      tracker_(scene_, world_, source_->rig(), standing_.T_rig_robot, standing_.covariance,
+               Corrected(options.tracker, correction_)) {}
 
 std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress) {
   using Order = Stage::Order;
   std::vector<Stage> stages{
-      {"detect", Order::kAny, [this](FrameInWork* frame) { Detect(frame); }},
-      {"estimate", Order::kInOrder, [this](FrameInWork* frame) { Estimate(frame); }}};
+      {"detect", Order::kAny, [this](FrameInWork* frame) { source_->Detect(frame); }},
+      {"estimate", Order::kInOrder,
+       [this](FrameInWork* frame) { source_->Estimate(world_, frame, &tracker_); }}};
   for (Stage& stage : outputs->Stages()) stages.push_back(std::move(stage));
   stages.push_back({"report", Order::kInOrder, [this, progress](FrameInWork* frame) {
                       tally_.Add(frame->result);
@@ -94,21 +61,18 @@ std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress)
 }
 
 std::string RunJob::Note() const {
-  if (!feed_.live()) return "";
-  const vision::SourceReport source = feed_.Report();
+  if (!source_->live()) return "";
+  const vision::SourceReport source = source_->Report();
   return fmt::format("{} waiting, {} dropped", source.queued, source.dropped);
 }
 
 void RunJob::ProcessFrames(RunOutputs* outputs) {
-  base::Progress progress("frames", feed_.expected_frames());
-  const FrameInput input{feed_.live() ? "capture" : "decode", [this](FrameInWork* frame) {
-                           std::optional<vision::FrameSet> set = feed_.Next();
-                           if (set) frame->set = std::move(*set);
-                           return set.has_value();
-                         }};
+  base::Progress progress("frames", source_->expected_frames());
+  const FrameInput input{source_->StageName(),
+                         [this](FrameInWork* frame) { return source_->Next(frame); }};
   const std::vector<Stage> stages = Stages(outputs, options_.show_progress ? &progress : nullptr);
   const int threads = options_.threads > 0 ? options_.threads : DefaultThreads();
-  if (feed_.live()) {
+  if (source_->live()) {
     // One more, which mostly waits for the cameras; and no more frames than are at work, for what
     // waits here is old when its turn comes.
     RunStages(input, stages, threads + 1, threads + kLiveFramesWaiting, &clock_);
@@ -119,8 +83,9 @@ void RunJob::ProcessFrames(RunOutputs* outputs) {
 }
 
 void RunJob::WriteSummaryFile() {
-  RunFacts facts{scene_,    options_, tally_,         world_,         correction_,
-                 standing_, index_w_, feed_.Inputs(), watch_.events()};
+  RunFacts facts{scene_,   options_,          tally_,
+                 world_,   correction_,       standing_,
+                 index_w_, source_->Inputs(), source_->RigEvents()};
   WriteSummary(facts, options_.out / "summary.json");
 }
 
@@ -141,21 +106,20 @@ RunReport RunJob::Finish() {
   const auto start = std::chrono::steady_clock::now();
   PrepareFolder(options_.out);
   LogSetUp();
-  RunOutputs outputs(options_, scene_, world_, rig_);
+  RunOutputs outputs(options_, scene_, world_, source_->rig());
 
   ProcessFrames(&outputs);
-  feed_.Finish();
+  source_->Finish();
 
   RunReport& report = tally_.report;
   report.out = options_.out;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report.stages = clock_.Report();
-  report.live = feed_.live();
-  report.source = feed_.Report();
-  report.recorded = feed_.Recorded();
-  std::vector<std::string> messages = feed_.Messages();
-  for (const RigEvent& event : watch_.events()) messages.push_back(event.text);
-  tally_.Judge(messages, feed_.ShortOf());
+  report.live = source_->live();
+  report.source = source_->Report();
+  report.recorded = source_->Recorded();
+  report.has_pictures = !source_->rig().cameras.empty();
+  tally_.Judge(source_->Messages(), source_->ShortOf());
   outputs.Commit();
   WriteSummaryFile();
   return report;

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
-#include "pipeline/frame_feed.h"
 #include "pipeline/frame_pipeline.h"
+#include "pipeline/marker_source.h"
 #include "pipeline/mesh_correction.h"
-#include "pipeline/parallel_detector.h"
-#include "pipeline/registration.h"
-#include "pipeline/rig_watch.h"
 #include "pipeline/run_outputs.h"
 #include "pipeline/run_tally.h"
 #include "softforce/base/progress.h"
@@ -25,10 +23,7 @@ class RunJob {
   RunReport Finish();
 
  private:
-  Standing PlaceRig();
   std::vector<Stage> Stages(RunOutputs* outputs, base::Progress* progress);
-  void Detect(FrameInWork* frame);
-  void Estimate(FrameInWork* frame);
   std::string Note() const;
   void ProcessFrames(RunOutputs* outputs);
   void LogSetUp() const;
@@ -36,15 +31,12 @@ class RunJob {
 
   const RunOptions& options_;
   const scene::Scene scene_;
-  const camera::Rig rig_;
-  FrameFeed feed_;
+  const std::unique_ptr<MarkerSource> source_;
   const std::optional<MeshCorrection> correction_;
   const World world_;
   const double index_w_;
-  ParallelDetector detector_;
   const Standing standing_;
   Tracker tracker_;
-  RigWatch watch_;
 
   StageClock clock_;
   RunTally tally_;

@@ -13,7 +13,7 @@ ActuatorKinds KindsOf(const World& world) {
 RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, const World& world,
                        const camera::Rig& rig)
     : world_(world), tables_(options.out, KindsOf(world)) {
-  if (options.overlay) {
+  if (options.overlay && !rig.cameras.empty()) {
     overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, options.overlay_width);
   }
   if (options.vtu) series_.emplace(options.out);

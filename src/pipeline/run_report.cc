@@ -44,6 +44,7 @@ std::string RunReport::FullReport() const {
   if (frames > 0) text += StageTable(stages, seconds);
   if (live) text += "\n" + source.FullReport();
   if (recorded) text += "\nRecorded: " + recorded->BriefReport() + "\n";
+  if (!has_pictures) text += "\nThe scene has no cameras, so there is no overlay.mp4.\n";
   return text + "\nResults: " + out.string() + "\n";
 }
 

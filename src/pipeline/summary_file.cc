@@ -45,7 +45,7 @@ Json Registration(const vision::RigPose& pose) {
 
 Json Registration(const Standing& standing) {
   if (standing.from_fiducials) return Registration(*standing.from_fiducials);
-  return Place("rig_file", standing.T_rig_robot, standing.covariance);
+  return Place(standing.from.c_str(), standing.T_rig_robot, standing.covariance);
 }
 
 Json Event(const RigEvent& event) {
@@ -133,12 +133,18 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
                      {"registration_frames", options.registration_frames},
                      {"watch_rig", options.watch_rig},
                      {"threads", options.threads > 0 ? options.threads : DefaultThreads()},
-                     {"overlay", options.overlay},
+                     {"overlay", options.overlay && !facts.scene.measured},
                      {"vtu", options.vtu},
                      {"method", estimation::Name(options.tracker.estimator.method)},
                      {"common_model_error", options.tracker.estimator.common_model_error},
                      {"local_model_error", options.tracker.estimator.local_model_error},
-                     {"motion_share", options.tracker.motion_share}};
+                     {"motion_share", options.tracker.motion_share},
+                     {"max_markers", options.tracker.max_markers}};
+  if (facts.scene.measured) {
+    json["measured"] = {{"file", facts.scene.measured->file.filename().string()},
+                        {"noise_mm", 1e3 * facts.scene.measured->noise},
+                        {"labels", facts.scene.measured->labels}};
+  }
   if (options.end_frame != std::numeric_limits<int>::max()) {
     json["options"]["end_frame"] = options.end_frame;
   }

@@ -61,11 +61,17 @@ class CameraTracks {
   std::map<int, vision::Track> tags_;
 };
 
+scene::Scene WithCameras(scene::Scene scene) {
+  if (!scene.measured) return scene;
+  throw base::InputError("--clocks", "goes with cameras, but the scene has motion capture",
+                         "A file of points has one clock.");
+}
+
 class Job {
  public:
   Job(const std::filesystem::path& scene_file, const TimeOffsetsOptions& options)
       : options_(options),
-        scene_(scene::LoadScene(scene_file)),
+        scene_(WithCameras(scene::LoadScene(scene_file))),
         rig_(scene::LoadRig(scene_.cameras.rig)),
         cameras_(rig_.cameras.size(), CameraTracks(options.search.longest_gap_s)) {
     if (rig_.cameras.size() < 2) {

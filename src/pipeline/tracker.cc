@@ -5,6 +5,7 @@
 
 #include "pipeline/actuators.h"
 #include "softforce/base/input_error.h"
+#include "softforce/pipeline/observe_points.h"
 
 namespace softforce::pipeline {
 
@@ -14,6 +15,7 @@ void TrackerOptions::Check() const {
   if (!(motion_share > 0)) {
     throw base::InputError("tracker: motion_share", "must be greater than 0");
   }
+  if (max_markers < 0) throw base::InputError("--max-markers", "must be 0 or more");
   if (!(prediction_floor > 0)) {
     throw base::InputError("tracker: prediction_floor", "must be greater than 0 m");
   }
@@ -47,7 +49,8 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
       intensity_covariance_(
           Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
   options_.Check();
-  estimator_.SetRegistrationCovariance(InRobotFrame(rig_covariance, T_rig_robot_));
+  registration_covariance_ = InRobotFrame(rig_covariance, T_rig_robot_);
+  estimator_.SetRegistrationCovariance(registration_covariance_);
 }
 
 std::vector<PredictedFeature> Tracker::Predict() {
@@ -91,19 +94,14 @@ FrameResult Tracker::Process(int frame, double time_s,
   features_.PlaceTags(rig_, T_rig_robot_, detections, estimator_.state().u, threshold,
                       options_.observe);
   const std::vector<PredictedFeature> predicted = Predict();
-  const FeatureSightings sightings =
-      scene_.markers.type == scene::MarkerType::kDot
-          ? AllocateDots(rig_, T_rig_robot_, predicted, detections, threshold, options_.observe)
-          : AllocateTagCorners(scene_.markers, rig_, T_rig_robot_, features_.features(), predicted,
-                               detections, threshold, options_.observe);
-  const std::vector<FeatureObservation> located =
-      Locate(rig_, T_rig_robot_, predicted, sightings, options_.observe);
+  const std::vector<FeatureObservation> located = Observe(predicted, detections, threshold);
 
+  const std::vector<char> chosen = Choose(located);
   std::vector<estimation::Observation> observations;
   std::vector<size_t> feature_of;
   observations_.clear();
   for (size_t f = 0; f < located.size(); ++f) {
-    if (located[f].whitening.rows() == 0) continue;
+    if (!chosen[f]) continue;
     const BodyPoint& point = features_.features()[f].point;
     observations.push_back({point.weights, point.offset, located[f].position, located[f].whitening,
                             features_.features()[f].marker});
@@ -127,8 +125,26 @@ FrameResult Tracker::Process(int frame, double time_s,
     result.forces = ForceResults(estimate);
   }
   result.markers = MarkerResults(located, rejected);
+  TellWhatWasUsed(chosen, rejected, &result.markers);
   AddActuators(actuation, &result);
   return result;
+}
+
+std::vector<FeatureObservation> Tracker::Observe(const std::vector<PredictedFeature>& predicted,
+                                                 const std::vector<CameraDetections>& detections,
+                                                 double threshold) const {
+  if (scene_.measured) {
+    std::vector<int> markers;
+    for (const Feature& feature : features_.features()) markers.push_back(feature.marker);
+    return ObservePoints(T_rig_robot_, predicted, markers, detections.front().points, threshold,
+                         options_.observe.allocation);
+  }
+  const FeatureSightings sightings =
+      scene_.markers.type == scene::MarkerType::kDot
+          ? AllocateDots(rig_, T_rig_robot_, predicted, detections, threshold, options_.observe)
+          : AllocateTagCorners(scene_.markers, rig_, T_rig_robot_, features_.features(), predicted,
+                               detections, threshold, options_.observe);
+  return Locate(rig_, T_rig_robot_, predicted, sightings, options_.observe);
 }
 
 void Tracker::AddActuators(const fem::Actuation& actuation, FrameResult* result) const {
@@ -163,7 +179,8 @@ FrameResult Tracker::Skip(int frame, double time_s, const std::string& reason) {
 void Tracker::PlaceRig(const Eigen::Isometry3d& T_rig_robot,
                        const geometry::Matrix6d& rig_covariance) {
   T_rig_robot_ = T_rig_robot;
-  estimator_.SetRegistrationCovariance(InRobotFrame(rig_covariance, T_rig_robot));
+  registration_covariance_ = InRobotFrame(rig_covariance, T_rig_robot);
+  estimator_.SetRegistrationCovariance(registration_covariance_);
 }
 
 std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& estimate) const {

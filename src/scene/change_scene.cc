@@ -134,7 +134,15 @@ void Change::MovePaths() {
   }
   MovePath(root_["body"]["mesh"]["file"], "mesh: file", scene_.mesh.file);
   if (scene_.actuation_file) MovePath(root_["actuation"], "actuation", *scene_.actuation_file);
-  MovePath(root_["cameras"]["rig"], "rig", scene_.cameras.rig);
+  if (scene_.measured) {
+    const YAML::Node measured = root_["measured"];
+    MovePath(measured.IsMap() ? measured["file"] : measured, "measured", scene_.measured->file);
+    if (!scene_.measured->rig.empty()) {
+      MovePath(measured["rig"], "measured: rig", scene_.measured->rig);
+    }
+  } else {
+    MovePath(root_["cameras"]["rig"], "rig", scene_.cameras.rig);
+  }
   for (const auto& [camera, source] : scene_.cameras.sources) {
     MovePath(root_["cameras"]["sources"][camera], "sources: " + camera, source);
   }
@@ -181,6 +189,11 @@ void Change::CheckReadsBack(const Scene& written, const SceneChanges& changes) c
     return a.has_value() == b.has_value() && (!a || same_file(*a, *b));
   };
   good &= same_or_none(written.actuation_file, scene_.actuation_file);
+  good &= written.measured.has_value() == scene_.measured.has_value();
+  if (good && scene_.measured) {
+    good &= same_file(written.measured->file, scene_.measured->file) &&
+            same_file(written.measured->rig, scene_.measured->rig);
+  }
   if (scene_.simulation) {
     good &= same_or_none(written.simulation->mesh_file, scene_.simulation->mesh_file) &&
             same_or_none(written.simulation->forces_file, scene_.simulation->forces_file) &&

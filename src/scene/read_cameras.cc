@@ -18,7 +18,7 @@ std::string ReadSource(const YamlValue& value, SceneFiles files) {
   if (!is_file && LooksLive(value.Text())) return value.Text();
   // The folder of one camera in a recorded one.
   if (std::filesystem::is_directory(value.Path(), ignored)) return value.Path().string();
-  const bool needed = files == SceneFiles::kAll;
+  const bool needed = files == SceneFiles::kAll || files == SceneFiles::kToRegister;
   return (needed ? value.ExistingFile() : value.Path()).string();
 }
 

@@ -9,6 +9,8 @@ MarkerPoint ReadMarkerPoint(YamlMap& map) {
   MarkerPoint point;
   point.id = map.Required("id").Integer(0);
   point.position = map.Required("position").Vector(Dimension::kLength);
+  const auto label = map.Optional("label");
+  point.label = label ? label->Text() : std::to_string(point.id);
   return point;
 }
 
@@ -40,16 +42,27 @@ std::string IdLabel(const T& item) {
 
 }  // namespace
 
-Markers ReadMarkers(YamlMap& map) {
+Markers ReadMarkers(YamlMap& map, bool measured) {
   Markers markers;
-  markers.type = map.Required("type").Choice<MarkerType>(
-      {{"dot", MarkerType::kDot}, {"apriltag", MarkerType::kAprilTag}});
-  if (markers.type == MarkerType::kAprilTag) markers.family = map.Required("family").Text();
-  markers.size = map.Required("size").PositiveQuantity(Dimension::kLength);
+  const std::vector<std::pair<std::string, MarkerType>> types = {
+      {"dot", MarkerType::kDot}, {"apriltag", MarkerType::kAprilTag}};
+  const auto type = measured ? map.Optional("type") : map.Required("type");
+  if (type) markers.type = type->Choice<MarkerType>(types);
+  if (markers.type == MarkerType::kAprilTag) {
+    if (measured) {
+      type->Fail("got apriltag, but points of motion capture are no tags, expected dot",
+                 "Leave out the keys \"type\", \"family\" and \"size\" of the markers.");
+    }
+    markers.family = map.Required("family").Text();
+  }
+  const auto size = measured ? map.Optional("size") : map.Required("size");
+  if (size) markers.size = size->PositiveQuantity(Dimension::kLength);
   const YamlValue points = map.Required("points");
   points.RefuseEmptyList("Forces are read from the displacements of markers.");
   markers.points = points.ReadMaps(ReadMarkerPoint);
   RefuseRepeated(points, markers.points, IdLabel<MarkerPoint>);
+  RefuseRepeated(points, markers.points,
+                 [](const MarkerPoint& point) { return "label \"" + point.label + "\""; });
   return markers;
 }
 

@@ -22,6 +22,24 @@ void ReadActuation(YamlMap& root, SceneFiles files, Scene& scene) {
   scene.actuation = ReadActuationTable(*scene.actuation_file, scene.actuators);
 }
 
+// Cameras or motion capture.
+void ReadSight(YamlMap& root, const std::optional<YamlValue>& measured, SceneFiles files,
+               Scene& scene) {
+  if (!measured) {
+    scene.cameras = root.Required("cameras", "Or give \"measured\", points of motion capture.")
+                        .ReadMap([&](YamlMap& map) { return ReadCameras(map, files); });
+    return;
+  }
+  if (const auto cameras = root.Optional("cameras")) {
+    cameras->Fail("got both \"cameras\" and \"measured\", expected one of them");
+  }
+  if (files == SceneFiles::kToSimulate) {
+    measured->Fail("got points of motion capture, expected the section \"cameras\" to simulate",
+                   "With \"pictures: false\" nothing but points is simulated.");
+  }
+  scene.measured = ReadMeasured(*measured, files);
+}
+
 // A tag of the body with the id of a tag of the base could be taken for it.
 void RefuseSharedTags(const Scene& scene, const YamlValue& root) {
   if (scene.markers.type != MarkerType::kAprilTag) return;
@@ -43,14 +61,11 @@ Scene LoadScene(const std::filesystem::path& file, SceneFiles files) {
     scene.name = root.Required("name").Text();
     ReadBody(root.Required("body"), files, scene);
     ReadActuation(root, files, scene);
-    scene.markers = root.Required("markers").ReadMap(ReadMarkers);
+    const auto measured = root.Optional("measured");
+    scene.markers = root.Required("markers").ReadMap(
+        [&](YamlMap& map) { return ReadMarkers(map, measured.has_value()); });
     scene.forces = root.Required("forces").ReadMap(ReadForces);
-    if (const auto measured = root.Optional("measured")) {
-      measured->Fail("motion-capture input is not available in this version of softforce",
-                     "Give \"cameras\" instead.");
-    }
-    scene.cameras =
-        root.Required("cameras").ReadMap([&](YamlMap& map) { return ReadCameras(map, files); });
+    ReadSight(root, measured, files, scene);
     RefuseSharedTags(scene, root.value());
     if (const auto simulation = root.Optional("simulation")) {
       scene.simulation =

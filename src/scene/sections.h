@@ -16,9 +16,11 @@ inline std::filesystem::path FileOf(const YamlValue& value, SceneFiles files) {
 void ReadBody(const YamlValue& body, SceneFiles files,
               Scene& scene);  // mesh, materials, fixed, gravity, density
 std::vector<Actuator> ReadActuators(const YamlValue& actuators);
-Markers ReadMarkers(YamlMap& markers);
+// `measured`: by motion capture, which does not need to know what they look like.
+Markers ReadMarkers(YamlMap& markers, bool measured);
 Forces ReadForces(YamlMap& forces);
 Cameras ReadCameras(YamlMap& cameras, SceneFiles files);
+Measured ReadMeasured(const YamlValue& measured, SceneFiles files);
 Simulation ReadSimulation(YamlMap& simulation, SceneFiles files, const Scene& scene);
 
 // One material for the whole body, called "", or one for each region.

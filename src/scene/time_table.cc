@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <utility>
 
+#include "scene/csv_lines.h"
 #include "scene/spelling.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/quantity.h"
@@ -15,40 +15,6 @@ namespace softforce::scene {
 namespace {
 
 using base::InputError;
-
-struct Line {
-  int number = 0;  // in the file, counted from 1
-  std::vector<std::string> cells;
-};
-
-std::string Trimmed(const std::string& text) {
-  const size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
-std::vector<std::string> SplitCells(const std::string& text) {
-  std::vector<std::string> cells;
-  size_t begin = 0;
-  for (size_t comma; (comma = text.find(',', begin)) != std::string::npos; begin = comma + 1) {
-    cells.push_back(Trimmed(text.substr(begin, comma - begin)));
-  }
-  cells.push_back(Trimmed(text.substr(begin)));
-  return cells;
-}
-
-std::vector<Line> ReadLines(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string(), "cannot be read", "Check that you may read it.");
-  const std::string byte_order_mark = "\xEF\xBB\xBF";  // spreadsheets put it in front of UTF-8
-  std::vector<Line> lines;
-  std::string text;
-  for (int number = 1; std::getline(stream, text); ++number) {
-    if (number == 1 && text.rfind(byte_order_mark, 0) == 0) text.erase(0, byte_order_mark.size());
-    if (!Trimmed(text).empty()) lines.push_back({number, SplitCells(text)});
-  }
-  return lines;
-}
 
 // Where a name stands in the header; nothing if it does not.
 std::optional<size_t> Find(const std::string& name, const std::vector<std::string>& header) {
@@ -93,7 +59,7 @@ TimeTable ReadTimeTable(const std::filesystem::path& file, const std::vector<std
                         Columns which) {
   std::vector<std::string> known{"time_s"};
   known.insert(known.end(), names.begin(), names.end());
-  const std::vector<Line> lines = ReadLines(file);
+  const std::vector<CsvLine> lines = ReadCsvLines(file);
   if (lines.size() < 2) {
     throw InputError(file.string(), "got no inputs, expected a header line and at least one row",
                      "The header is: " + fmt::format("{}", fmt::join(known, ",")));

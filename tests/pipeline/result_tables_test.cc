@@ -56,6 +56,8 @@ TEST(ResultTables, WriteTheColumnsThatScriptsRead) {
             "frame,time_s,marker,status,x_mm,y_mm,z_mm,sd_mm,model_x_mm,model_y_mm,model_z_mm,"
             "residual_mm\n"
             "3,0.100000,2,hidden,,,,,1.0000,2.0000,3.0000,\n");
+  EXPECT_EQ(ReadText(folder / "information.csv"),
+            "frame,time_s,marker,used,information_share\n3,0.100000,2,0,\n");
   EXPECT_EQ(ReadText(folder / "actuation.csv"),
             "frame,time_s,actuator,tension_N,displacement_mm\n3,0.100000,left,0.900000,8.00000\n");
 }

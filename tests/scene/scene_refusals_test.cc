@@ -249,10 +249,64 @@ TEST(SceneRefusal, WantsActuatorsForATable) {
               HasSubstr("actuation: got a table of inputs, but the scene has no actuators"));
 }
 
-TEST(SceneRefusal, SaysThatMotionCaptureIsNotAvailable) {
-  EXPECT_EQ(SceneRefusal("cameras:", "measured: markers3d.csv\ncameras:"),
-            "scene.yaml:32: measured: motion-capture input is not available in this version of "
-            "softforce\n  Give \"cameras\" instead.");
+TEST(SceneRefusal, WantsCamerasOrMotionCaptureAndNotBoth) {
+  const std::string text = kSceneText;
+  const std::string markers = "  type: apriltag\n  family: tag25h9\n  size: 14 mm\n";
+  testing::WriteFile(testing::TempFolder() / "markers3d.csv", "");
+  const std::string both = testing::Replaced(testing::Replaced(text, markers, ""),
+                                             "cameras:", "measured: markers3d.csv\ncameras:");
+
+  EXPECT_EQ(testing::Refusal([&] { LoadScene(testing::WriteScene(both)); }),
+            "scene.yaml:30: cameras: got both \"cameras\" and \"measured\", expected one of them");
+  EXPECT_THAT(SceneRefusal(text.substr(text.find("cameras:")), ""),
+              HasSubstr("Or give \"measured\", points of motion capture."));
+}
+
+// kSceneText with motion capture, `section`, instead of cameras and tags.
+std::filesystem::path MeasuredScene(const std::string& section) {
+  const std::string text = kSceneText;
+  const std::string markers = "  type: apriltag\n  family: tag25h9\n  size: 14 mm\n";
+  testing::WriteFile(testing::TempFolder() / "take.csv", "");
+  testing::WriteFile(testing::TempFolder() / "place.yaml", "softforce: 1\n");
+  return testing::WriteScene(testing::Replaced(text.substr(0, text.find("cameras:")), markers, "") +
+                             section);
+}
+
+TEST(SceneRefusal, ReadsWhatMotionCaptureNeeds) {
+  const Scene scene = LoadScene(MeasuredScene(
+      "measured: {file: take.csv, unit: cm, rate: 100 Hz, noise: 0.1 mm, labels: false, ignore: "
+      "[wand]}\n"));
+
+  ASSERT_TRUE(scene.measured.has_value());
+  EXPECT_EQ(scene.measured->metres_per_unit, 1e-2);
+  EXPECT_EQ(scene.measured->rate, 100);
+  EXPECT_DOUBLE_EQ(scene.measured->noise, 1e-4);
+  EXPECT_FALSE(scene.measured->labels);
+  EXPECT_EQ(scene.measured->ignore.at(0), "wand");
+  EXPECT_EQ(scene.markers.points[1].label, "7");  // its id
+}
+
+TEST(SceneRefusal, SaysWhatIsWrongWithMotionCapture) {
+  const auto refusal = [](const std::string& section) {
+    return testing::Refusal([&] { LoadScene(MeasuredScene(section)); });
+  };
+
+  EXPECT_THAT(refusal("measured: takes.csv\n"), HasSubstr("measured: there is no file takes.csv"));
+  EXPECT_THAT(refusal("measured: {file: take.csv, noise: 0.1 N}\n"),
+              HasSubstr("measured: noise: "));
+  EXPECT_THAT(refusal("measured: {file: take.csv, units: mm}\n"), HasSubstr("units"));
+  EXPECT_THAT(refusal("measured: {file: take.csv, rig: place.yaml, T_rig_robot: [[1, 0, 0, 0], [0, "
+                      "1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}\n"),
+              HasSubstr("got both \"rig\" and \"T_rig_robot\", expected one of them"));
+}
+
+TEST(SceneRefusal, KnowsThatMotionCaptureSeesNoTags) {
+  const std::string text = kSceneText;
+  testing::WriteFile(testing::TempFolder() / "take.csv", "");
+  const std::string tags = text.substr(0, text.find("cameras:")) + "measured: take.csv\n";
+
+  EXPECT_THAT(testing::Refusal([&] { LoadScene(testing::WriteScene(tags)); }),
+              HasSubstr("markers: type: got apriltag, but points of motion capture are no tags"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "softforce/allocation/allocate.h"
 #include "softforce/camera/rig.h"
 #include "softforce/camera/triangulate.h"
+#include "softforce/scene/measured.h"
 #include "softforce/vision/dots.h"
 #include "softforce/vision/tags.h"
 
@@ -21,10 +22,11 @@ struct PredictedFeature {
 };
 
 // What one camera saw of feature points. For dots the detections are anonymous; for tags they come
-// with ids.
+// with ids. Motion capture stands for one camera: it sees points in space, with labels or without.
 struct CameraDetections {
   std::vector<vision::Dot> dots;
   std::vector<vision::Tag> tags;
+  std::vector<scene::MeasuredPoint> points = {};
 };
 
 // Where a feature point was measured.

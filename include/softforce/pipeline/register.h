@@ -17,6 +17,7 @@ enum class RegisterFrom {
   kAnything,   // fiducials if the scene has any, else markers
   kFiducials,  // tags of known place on the base
   kMarkers,    // the body's own markers, while nothing but its actuators acts on it
+               // (the only way of motion capture)
   kPairs       // points that a person typed
 };
 
@@ -38,7 +39,8 @@ struct RegisterOptions {
 struct RegisterReport {
   std::filesystem::path rig_file;
   vision::RigPose pose;
-  std::string how;  // what it was found from, for a person
+  double rms = NAN;  // m, misfit of the markers in space, by motion capture
+  std::string how;   // what it was found from, for a person
   std::vector<std::string> warnings;
   Eigen::Vector3d body_centre = Eigen::Vector3d::Zero();      // m, robot frame, of the markers
   Eigen::Matrix3d body_covariance = Eigen::Matrix3d::Zero();  // m², of that point by the pose, rig
@@ -49,8 +51,8 @@ struct RegisterReport {
   std::string FullReport() const;
 };
 
-// Finds where the rig stands in the robot frame. Throws InputError if it cannot be found, saying
-// what is missing: a place is never guessed.
+// Finds where the rig, or the frame of motion capture, stands in the robot frame. Throws InputError
+// if it cannot be found, saying what is missing: a place is never guessed.
 RegisterReport Register(const std::filesystem::path& scene_file, const RegisterOptions& options);
 
 }  // namespace softforce::pipeline

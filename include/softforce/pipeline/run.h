@@ -58,6 +58,7 @@ struct RunReport {
   vision::SourceReport source;                     // how the cameras fared
   std::optional<vision::RecorderReport> recorded;  // if a recording was made
   bool live = false;
+  bool has_pictures = true;  // false: of motion capture, and so no overlay
   std::filesystem::path out;
 
   // Whether the results can be relied on: the recording was whole and most frames gave forces.
@@ -67,11 +68,12 @@ struct RunReport {
   std::string FullReport() const;   // with tables of the last frame's forces and of the stages
 };
 
-// The main job: scene.yaml in, forces out. Reads the recording that the scene names, or its live
-// cameras, finds where the rig stands, estimates the forces in every frame, and writes forces.csv,
-// markers.csv, actuation.csv, summary.json and overlay.mp4. Files show up under their names only
-// when they are complete. Stages run beside each other on threads; the tables do not depend on how
-// many. Throws InputError for input that cannot be used, before anything is written where possible.
+// The main job: scene.yaml in, forces out. Reads the recording that the scene names, its live
+// cameras or its points of motion capture, finds where the rig stands, estimates the forces in
+// every frame, and writes forces.csv, markers.csv, actuation.csv, summary.json and overlay.mp4.
+// Files show up under their names only when they are complete. Stages run beside each other on
+// threads; the tables do not depend on how many. Throws InputError for input that cannot be used,
+// before anything is written where possible.
 RunReport Run(const std::filesystem::path& scene_file, const RunOptions& options = {});
 
 }  // namespace softforce::pipeline

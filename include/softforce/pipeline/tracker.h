@@ -16,6 +16,7 @@ struct TrackerOptions {
   // deviation), as a share of the smallest marker spacing: sets the forces' random walk, and
   // through the compliance the gates, which are long where the body is soft.
   double motion_share = 0.25;
+  int max_markers = 0;  // that forces are estimated from, the most informative ones; 0: all
   double prediction_floor = 0.3e-3;  // m, standard deviation of a prediction at the least
   double threshold_displacement =
       1;  // the paper's threshold, as a share of the smallest marker spacing
@@ -39,7 +40,7 @@ geometry::Matrix6d InRobotFrame(const geometry::Matrix6d& rig_covariance,
 class Tracker {
  public:
   // `rig_covariance`: of a twist xi in the rig frame, T_rig_robot = ExpSe3(xi) · estimate. Scene,
-  // world and rig must outlive the tracker.
+  // world and rig must outlive the tracker. The rig has no cameras if motion capture measures.
   Tracker(const scene::Scene& scene, const World& world, const camera::Rig& rig,
           const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance,
           const TrackerOptions& options = {});
@@ -59,8 +60,15 @@ class Tracker {
 
  private:
   std::vector<PredictedFeature> Predict();
+  std::vector<FeatureObservation> Observe(const std::vector<PredictedFeature>& predicted,
+                                          const std::vector<CameraDetections>& detections,
+                                          double threshold) const;
   std::vector<MarkerResult> MarkerResults(const std::vector<FeatureObservation>& observations,
                                           const std::vector<char>& rejected) const;
+  // Which of the located features to estimate from, and what their markers tell about the forces.
+  std::vector<char> Choose(const std::vector<FeatureObservation>& located);
+  void TellWhatWasUsed(const std::vector<char>& chosen, const std::vector<char>& rejected,
+                       std::vector<MarkerResult>* markers) const;
   void AddActuators(const fem::Actuation& actuation, FrameResult* result) const;
   std::vector<ForceResult> ForceResults(const estimation::ForceEstimate& estimate) const;
 
@@ -72,8 +80,10 @@ class Tracker {
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;
   std::vector<MarkerObservation> observations_;
-  Eigen::MatrixXd intensity_covariance_;  // N²; grows by the random walk from frame to frame
-  int frames_without_forces_ = 0;         // since the last usable one
+  geometry::Matrix6d registration_covariance_;  // as the estimator takes it
+  std::vector<double> information_;             // per marker, of the last frame
+  Eigen::MatrixXd intensity_covariance_;        // N²; grows by the random walk from frame to frame
+  int frames_without_forces_ = 0;               // since the last usable one
 };
 
 }  // namespace softforce::pipeline

@@ -23,6 +23,13 @@ struct RigPlace {
 void WritePlacedRig(const std::filesystem::path& from, const RigPlace& place,
                     const std::filesystem::path& to);
 
+// The place in a rig.yaml, or in a file with a place and no cameras, as motion capture has it.
+// Throws InputError if there is none.
+RigPlace LoadPlace(const std::filesystem::path& file);
+
+// Writes a file with a place and no cameras, complete or not at all.
+void WritePlace(const RigPlace& place, const std::filesystem::path& file);
+
 // Throws InputError if `from` would be replaced by itself with a place that its format cannot hold.
 void CheckCanHoldPlace(const std::filesystem::path& from, const std::filesystem::path& to);
 

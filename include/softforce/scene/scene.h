@@ -12,6 +12,7 @@
 #include "softforce/camera/rig.h"
 #include "softforce/fem/material.h"
 #include "softforce/render/picture.h"
+#include "softforce/scene/measured.h"
 #include "softforce/simulation/measure.h"
 #include "softforce/simulation/scenery.h"
 
@@ -66,12 +67,15 @@ enum class MarkerType { kDot, kAprilTag };
 struct MarkerPoint {
   int id = -1;
   Eigen::Vector3d position;  // m, body at rest
+  std::string label = {};    // what motion capture calls it; the id if the scene does not say
 };
 
 struct Markers {
   MarkerType type = MarkerType::kDot;
   std::string family;  // of tags
-  double size = NAN;   // m: diameter of a dot, side of a tag's black square
+  // m: diameter of a dot, side of a tag's black square; NaN if motion capture measures it, and the
+  // scene does not say.
+  double size = NAN;
   std::vector<MarkerPoint> points;
 };
 
@@ -158,7 +162,8 @@ struct Scene {
   ActuationTable actuation;
   Markers markers;
   Forces forces;
-  Cameras cameras;
+  Cameras cameras;                   // none if `measured`
+  std::optional<Measured> measured;  // instead of cameras
   std::optional<Simulation> simulation;
 };
 
@@ -166,6 +171,7 @@ struct Scene {
 enum class SceneFiles {
   kAll,
   kNone,        // to judge a mesh before anything is recorded; the actuation table is left empty
+  kToRegister,  // all but where motion capture's frame is, which is to be found
   kToSimulate,  // all but the recording, and those that the section "simulation" names
 };
 
