@@ -6,6 +6,7 @@
 //   build/release/benchmarks/detection_accuracy [POSES [PIXEL_FLOOR]]
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -62,7 +63,9 @@ struct Point {
 class Plate {
  public:
   explicit Plate(const Setting& setting, bool tags) : setting_(setting), tags_(tags) {
-    mesh_ = softforce::testing::MakeBox(2, 2, 1, {kPlate, kPlate, kThickness});
+    // Triangles as small as the markers: the renderer asks each ray of a triangle which of the
+    // triangle's markers it meets.
+    mesh_ = softforce::testing::MakeBox(16, 16, 1, {kPlate, kPlate, kThickness});
     surface_ = mesh::ExtractSurface(mesh_);
   }
 
@@ -71,7 +74,8 @@ class Plate {
  private:
   std::vector<Sticker> PutMarkers(std::mt19937* random) const;
   Eigen::Isometry3d PutPlate(std::mt19937* random) const;
-  std::vector<std::optional<PixelObservation>> Detect(int c, const cv::Mat& grey,
+  std::vector<std::optional<PixelObservation>> Detect(int c, const camera::Camera& camera,
+                                                      const cv::Mat& grey,
                                                       const Eigen::Isometry3d& T_rig_plate,
                                                       const std::vector<Point>& points) const;
 
@@ -129,16 +133,44 @@ Eigen::Isometry3d Plate::PutPlate(std::mt19937* random) const {
   return T;
 }
 
+// The cameras with only that part of their pictures in which the plate is: rendering takes time.
+camera::Rig Cut(camera::Rig rig, const Eigen::Isometry3d& T_rig_plate) {
+  constexpr double kRim = 30;  // px
+  for (camera::Camera& camera : rig.cameras) {
+    Eigen::AlignedBox2d box;
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3d corner(i & 1 ? kPlate : 0, i & 2 ? kPlate : 0, i & 4 ? kThickness : 0);
+      box.extend(camera::Project(camera.lens, camera.T_camera_rig * T_rig_plate * corner).pixel);
+    }
+    const Eigen::Vector2d low = (box.min().array() - kRim).max(0).floor();
+    const Eigen::Vector2d high =
+        (box.max().array() + kRim).min(Eigen::Array2d(camera.width, camera.height)).ceil();
+    camera.lens.cx -= low.x();
+    camera.lens.cy -= low.y();
+    camera.width = static_cast<int>(high.x() - low.x());
+    camera.height = static_cast<int>(high.y() - low.y());
+  }
+  return rig;
+}
+
+// As a run looks for tags near where they are expected.
+vision::TagOptions AtFullSize() {
+  vision::TagOptions options;
+  options.decimate = 1;
+  return options;
+}
+
 // What camera c makes of each point: the dot next to it, less the shift of its centroid, or the
 // corner of the tag of that number.
-std::vector<std::optional<PixelObservation>> Plate::Detect(int c, const cv::Mat& grey,
+std::vector<std::optional<PixelObservation>> Plate::Detect(int c, const camera::Camera& camera,
+                                                           const cv::Mat& grey,
                                                            const Eigen::Isometry3d& T_rig_plate,
                                                            const std::vector<Point>& points) const {
-  const camera::Camera& camera = rig_.cameras[c];
   const Eigen::Isometry3d T = camera.T_camera_rig * T_rig_plate;
   std::vector<std::optional<PixelObservation>> seen(points.size());
   if (tags_) {
-    for (const vision::Tag& tag : vision::TagDetector("tag36h11").Detect(grey)) {
+    for (const vision::Tag& tag :
+         vision::TagDetector("tag36h11", AtFullSize()).Detect(grey, &camera.lens)) {
       for (size_t k = 0; k < 4; ++k) {
         const size_t i = 4 * static_cast<size_t>(tag.id) + k;
         if (i >= points.size()) continue;
@@ -185,16 +217,18 @@ void Plate::Look(std::mt19937* random, double pixel_floor, Tally* tally) const {
   render::PictureOptions options;
   options.blur = setting_.blur;
   options.noise = setting_.noise;
-  options.rays = 12;  // so that the picture's noise is that of the sensor alone
+  options.rays = 16;  // so that the picture's noise is that of the sensor alone
   if (setting_.dark) std::swap(options.body, options.white);
   options.light = T_rig_plate.linear().transpose() * Eigen::Vector3d(0.2, -0.3, -1).normalized();
+  const camera::Rig rig = Cut(rig_, T_rig_plate);
   std::vector<std::vector<std::optional<PixelObservation>>> seen;
-  for (int c = 0; c < static_cast<int>(rig_.cameras.size()); ++c) {
+  for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
     const auto seed = static_cast<std::uint32_t>((*random)());
     const render::PictureWorld world{&surface_, &mesh_.nodes, markers, {}};
-    const render::PictureMaker maker(rig_.cameras[c], rig_.cameras[c].T_camera_rig * T_rig_plate,
+    const render::PictureMaker maker(rig.cameras[c], rig.cameras[c].T_camera_rig * T_rig_plate,
                                      world, options);
-    seen.push_back(Detect(c, maker.Take(mesh_.nodes, {}, seed).grey, T_rig_plate, points));
+    const cv::Mat grey = maker.Take(mesh_.nodes, {}, seed).grey;
+    seen.push_back(Detect(c, rig.cameras[c], grey, T_rig_plate, points));
   }
 
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -205,7 +239,7 @@ void Plate::Look(std::mt19937* random, double pixel_floor, Tally* tally) const {
       if (!seen[c][i]) continue;
       PixelObservation pixel = *seen[c][i];
       pixel.covariance += pixel_floor * pixel_floor * Eigen::Matrix2d::Identity();
-      const camera::Camera& camera = rig_.cameras[c];
+      const camera::Camera& camera = rig.cameras[c];
       const Eigen::Vector2d truth =
           camera::Project(camera.lens, camera.T_camera_rig * T_rig_plate * points[i].place).pixel;
       const Eigen::Vector2d error = pixel.pixel - truth;
@@ -220,7 +254,7 @@ void Plate::Look(std::mt19937* random, double pixel_floor, Tally* tally) const {
       corners = 0;
     }
     if (both.size() < seen.size()) continue;
-    const camera::Triangulation found = camera::Triangulate(rig_, both);
+    const camera::Triangulation found = camera::Triangulate(rig, both);
     if (!found.p_rig.allFinite()) continue;
     const Eigen::Vector3d error = found.p_rig - T_rig_plate * points[i].place;
     tally->place2 += error.squaredNorm();

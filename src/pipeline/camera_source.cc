@@ -14,11 +14,12 @@ CameraSource::CameraSource(const scene::Scene& scene, const RunOptions& options)
       options_(options),
       rig_(scene::LoadRig(scene.cameras.rig)),
       feed_(scene_, rig_, options),
-      detector_(scene_) {}
+      detector_(scene_, rig_),
+      oddities_(scene_, rig_) {}
 
 Standing CameraSource::Start(const Tell& tell) {
   feed_.Start(tell);
-  const Standing standing = FindRig(scene_, rig_, Detector(scene_), feed_.FirstFrames());
+  const Standing standing = FindRig(scene_, rig_, Detector(scene_, rig_), feed_.FirstFrames());
   watch_.emplace(scene_, rig_, standing, options_.registration_frames, tell);
   return standing;
 }
@@ -29,7 +30,13 @@ bool CameraSource::Next(FrameInWork* frame) {
   return set.has_value();
 }
 
-// A function of the frame alone: the places are those of the first frames, also after a bump.
+// Tags are followed from frame to frame; dots are a function of the frame alone.
+Stage::Order CameraSource::DetectOrder() const {
+  return scene_.markers.type == scene::MarkerType::kDot ? Stage::Order::kAny
+                                                        : Stage::Order::kInOrder;
+}
+
+// The places are those of the first frames, also after a bump.
 void CameraSource::Detect(FrameInWork* frame) {
   frame->detections = detector_.Markers(frame->set);
   if (options_.watch_rig == 0 || frame->set.frame % options_.watch_rig != 0) return;
@@ -46,6 +53,7 @@ void CameraSource::Estimate(const World& world, FrameInWork* frame, Tracker* tra
   frame->result = !verdict.trusted ? tracker->Skip(number, time_s, verdict.reason)
                   : !worth_it      ? tracker->Skip(number, time_s, kMoved)
                                    : tracker->Process(number, time_s, frame->detections);
+  oddities_.Add(frame->detections);
   frame->T_rig_robot = standing.T_rig_robot;
   frame->u = tracker->state().u;
   if (options_.watch_rig == 0 || !verdict.trusted || !worth_it) return;
@@ -61,6 +69,7 @@ std::vector<RigEvent> CameraSource::RigEvents() const {
 std::vector<std::string> CameraSource::Messages() const {
   std::vector<std::string> messages = feed_.Messages();
   for (const RigEvent& event : RigEvents()) messages.push_back(event.text);
+  for (std::string& message : oddities_.Messages()) messages.push_back(std::move(message));
   return messages;
 }
 

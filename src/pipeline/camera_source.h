@@ -3,6 +3,7 @@
 #include "pipeline/frame_feed.h"
 #include "pipeline/marker_source.h"
 #include "pipeline/parallel_detector.h"
+#include "pipeline/tag_oddities.h"
 
 namespace softforce::pipeline {
 
@@ -16,6 +17,7 @@ class CameraSource : public MarkerSource {
   const camera::Rig& rig() const override { return rig_; }
   std::string StageName() const override { return feed_.live() ? "capture" : "decode"; }
   bool Next(FrameInWork* frame) override;
+  Stage::Order DetectOrder() const override;
   void Detect(FrameInWork* frame) override;
   void Estimate(const World& world, FrameInWork* frame, Tracker* tracker) override;
   void Finish() override { feed_.Finish(); }
@@ -37,6 +39,7 @@ class CameraSource : public MarkerSource {
   FrameFeed feed_;
   ParallelDetector detector_;
   std::optional<RigWatch> watch_;
+  TagOddities oddities_;
 };
 
 }  // namespace softforce::pipeline

@@ -35,7 +35,8 @@ class MarkerSource {
   // it was stopped. For one thread.
   virtual bool Next(FrameInWork* frame) = 0;
 
-  // Finds what may be markers. Several frames at once: a function of the frame alone.
+  // Finds what may be markers; the order in which Detect takes the frames.
+  virtual Stage::Order DetectOrder() const { return Stage::Order::kAny; }
   virtual void Detect(FrameInWork* frame) = 0;
 
   // The forces of a frame, the frames in their order.

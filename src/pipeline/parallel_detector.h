@@ -6,12 +6,13 @@
 
 namespace softforce::pipeline {
 
-// Detects the markers in all pictures of a frame at once, and in several frames at once: AprilTag's
-// detectors keep notes while they work, so every thread has its own.
+// Detects the markers in all pictures of a frame at once. AprilTag's detectors keep notes while
+// they work, so every thread has its own; how tags move is followed from frame to frame, so frames
+// must come one after another and in order.
 class ParallelDetector {
  public:
-  // The scene must outlive it.
-  explicit ParallelDetector(const scene::Scene& scene);
+  // Both must outlive it.
+  ParallelDetector(const scene::Scene& scene, const camera::Rig& rig);
 
   std::vector<CameraDetections> Markers(const vision::FrameSet& set);
 
@@ -24,6 +25,7 @@ class ParallelDetector {
 
  private:
   tbb::enumerable_thread_specific<Detector> detectors_;
+  std::vector<vision::TagFollower> followers_;  // of each camera
 };
 
 }  // namespace softforce::pipeline

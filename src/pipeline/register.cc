@@ -112,7 +112,7 @@ class Job {
                        "List the corners of tags on the robot's base under 'fiducials', or use "
                        "--from markers or --pairs.");
     }
-    const Standing standing = FindRig(scene_, rig_, Detector(scene_), [&](const auto& look) {
+    const Standing standing = FindRig(scene_, rig_, Detector(scene_, rig_), [&](const auto& look) {
       for (const vision::FrameSet& frame : Frames(options_.fiducial_frames)) look(frame);
     });
     report_.pose = *standing.from_fiducials;

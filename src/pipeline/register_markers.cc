@@ -163,7 +163,7 @@ MarkerPlacement PlaceByMarkers(const scene::Scene& scene, const camera::Rig& rig
   const World world = BuildWorld(scene);
   const Eigen::Matrix3Xd x = UnloadedBody(world, scene, frame.time_s);
   const std::vector<calibration::KnownDot> places = KnownDots(scene, world, x);
-  const std::vector<CameraDetections> seen = Detector(scene).Markers(frame);
+  const std::vector<CameraDetections> seen = Detector(scene, rig).Markers(frame);
   return scene.markers.type == scene::MarkerType::kDot ? ByDots(scene, rig, places, seen, options)
                                                        : ByTags(scene, rig, places, seen, options);
 }

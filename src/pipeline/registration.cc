@@ -13,7 +13,7 @@ constexpr double kMaxRegistrationRms = 3;  // px
 
 }  // namespace
 
-Detector::Detector(const scene::Scene& scene) : scene_(scene) {
+Detector::Detector(const scene::Scene& scene, const camera::Rig& rig) : scene_(scene), rig_(rig) {
   std::vector<std::string> families;
   if (scene.markers.type == scene::MarkerType::kAprilTag) families.push_back(scene.markers.family);
   for (const calibration::Fiducial& fiducial : scene.cameras.fiducials) {
@@ -24,29 +24,36 @@ Detector::Detector(const scene::Scene& scene) : scene_(scene) {
   }
 }
 
-std::vector<vision::Tag> Detector::Tags(const cv::Mat& picture, const std::string& family) const {
-  return detectors_.at(family).Detect(picture);
+const camera::Lens* Detector::LensOf(int c) const { return &rig_.cameras.at(c).lens; }
+
+CameraDetections Detector::Markers(int c, const cv::Mat& picture) const {
+  if (scene_.markers.type == scene::MarkerType::kDot) return {vision::DetectDots(picture), {}};
+  return {{}, detectors_.at(scene_.markers.family).Detect(picture, LensOf(c))};
 }
 
-CameraDetections Detector::Markers(const cv::Mat& picture) const {
-  if (scene_.markers.type == scene::MarkerType::kDot) return {vision::DetectDots(picture), {}};
-  return {{}, Tags(picture, scene_.markers.family)};
+CameraDetections Detector::Markers(int c, const cv::Mat& picture,
+                                   vision::TagFollower* follower) const {
+  // Dots are found in the whole picture in less time than it takes to keep account of them.
+  if (scene_.markers.type == scene::MarkerType::kDot) return Markers(c, picture);
+  return {{}, follower->Detect(detectors_.at(scene_.markers.family), picture, LensOf(c))};
 }
 
 std::vector<CameraDetections> Detector::Markers(const vision::FrameSet& frame) const {
   std::vector<CameraDetections> cameras;
   cameras.reserve(frame.pictures.size());
-  for (const cv::Mat& picture : frame.pictures) cameras.push_back(Markers(picture));
+  for (int c = 0; c < static_cast<int>(frame.pictures.size()); ++c) {
+    cameras.push_back(Markers(c, frame.pictures[c]));
+  }
   return cameras;
 }
 
-std::vector<vision::Tag> Detector::AllFiducials(const cv::Mat& picture) const {
+std::vector<vision::Tag> Detector::AllFiducials(int c, const cv::Mat& picture) const {
   std::vector<vision::Tag> all;
   std::vector<std::string> searched;
   for (const calibration::Fiducial& fiducial : scene_.cameras.fiducials) {
     if (std::find(searched.begin(), searched.end(), fiducial.family) != searched.end()) continue;
     searched.push_back(fiducial.family);
-    const std::vector<vision::Tag> tags = Tags(picture, fiducial.family);
+    const std::vector<vision::Tag> tags = detectors_.at(fiducial.family).Detect(picture, LensOf(c));
     all.insert(all.end(), tags.begin(), tags.end());
   }
   return all;
@@ -55,7 +62,9 @@ std::vector<vision::Tag> Detector::AllFiducials(const cv::Mat& picture) const {
 std::vector<std::vector<vision::Tag>> Detector::Fiducials(const vision::FrameSet& frame) const {
   std::vector<std::vector<vision::Tag>> cameras;
   cameras.reserve(frame.pictures.size());
-  for (const cv::Mat& picture : frame.pictures) cameras.push_back(AllFiducials(picture));
+  for (int c = 0; c < static_cast<int>(frame.pictures.size()); ++c) {
+    cameras.push_back(AllFiducials(c, frame.pictures[c]));
+  }
   return cameras;
 }
 
@@ -63,24 +72,22 @@ std::vector<std::vector<vision::Tag>> Detector::FiducialsNear(
     const vision::FrameSet& frame, const std::vector<CameraDetections>& markers,
     const std::vector<std::vector<FiducialPlace>>& places) const {
   std::vector<std::vector<vision::Tag>> cameras(frame.pictures.size());
-  for (size_t c = 0; c < cameras.size(); ++c) {
+  for (int c = 0; c < static_cast<int>(cameras.size()); ++c) {
     for (const FiducialPlace& place : places[c]) {
       const calibration::Fiducial& fiducial = scene_.cameras.fiducials[place.fiducial];
       const bool among_markers = scene_.markers.type == scene::MarkerType::kAprilTag &&
                                  scene_.markers.family == fiducial.family;
-      std::vector<vision::Tag> tags =
-          among_markers ? markers[c].tags : Tags(frame.pictures[c](place.area), fiducial.family);
+      std::vector<vision::Tag> tags = among_markers
+                                          ? markers[c].tags
+                                          : detectors_.at(fiducial.family)
+                                                .DetectIn(frame.pictures[c], place.area,
+                                                          vision::TagOptions().decimate, LensOf(c));
       for (vision::Tag& tag : tags) {
         if (tag.id != fiducial.id) continue;
-        if (!among_markers) {
-          for (Eigen::Vector2d& corner : tag.corners) {
-            corner += Eigen::Vector2d(place.area.x, place.area.y);
-          }
-        }
         cameras[c].push_back(std::move(tag));
       }
     }
-    if (2 * cameras[c].size() < places[c].size()) cameras[c] = AllFiducials(frame.pictures[c]);
+    if (2 * cameras[c].size() < places[c].size()) cameras[c] = AllFiducials(c, frame.pictures[c]);
   }
   return cameras;
 }

@@ -5,15 +5,20 @@
 #include "softforce/pipeline/run.h"
 #include "softforce/vision/recording.h"
 #include "softforce/vision/rig_pose.h"
+#include "softforce/vision/tag_follower.h"
 
 namespace softforce::pipeline {
 
 // Detects what a scene's markers and fiducials need in pictures; for one thread.
 class Detector {
  public:
-  explicit Detector(const scene::Scene& scene);
+  // Both must outlive it.
+  Detector(const scene::Scene& scene, const camera::Rig& rig);
 
-  CameraDetections Markers(const cv::Mat& picture) const;
+  // What camera c sees.
+  CameraDetections Markers(int c, const cv::Mat& picture) const;
+  // The same, where `follower` was shown the pictures before.
+  CameraDetections Markers(int c, const cv::Mat& picture, vision::TagFollower* follower) const;
   std::vector<CameraDetections> Markers(const vision::FrameSet& frame) const;
   std::vector<std::vector<vision::Tag>> Fiducials(const vision::FrameSet& frame) const;
 
@@ -29,10 +34,11 @@ class Detector {
       const std::vector<std::vector<FiducialPlace>>& places) const;
 
  private:
-  std::vector<vision::Tag> Tags(const cv::Mat& picture, const std::string& family) const;
-  std::vector<vision::Tag> AllFiducials(const cv::Mat& picture) const;
+  const camera::Lens* LensOf(int c) const;
+  std::vector<vision::Tag> AllFiducials(int c, const cv::Mat& picture) const;
 
   const scene::Scene& scene_;
+  const camera::Rig& rig_;
   std::map<std::string, vision::TagDetector> detectors_;  // by family
 };
 

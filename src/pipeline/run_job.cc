@@ -49,7 +49,7 @@ RunJob::RunJob(const std::filesystem::path& scene_file, const RunOptions& option
 std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress) {
   using Order = Stage::Order;
   std::vector<Stage> stages{
-      {"detect", Order::kAny, [this](FrameInWork* frame) { source_->Detect(frame); }},
+      {"detect", source_->DetectOrder(), [this](FrameInWork* frame) { source_->Detect(frame); }},
       {"estimate", Order::kInOrder,
        [this](FrameInWork* frame) { source_->Estimate(world_, frame, &tracker_); }}};
   for (Stage& stage : outputs->Stages()) stages.push_back(std::move(stage));

@@ -104,7 +104,7 @@ class Job {
     FrameFeed feed(scene_, rig_, run);
     feed.Start(base::TellBesideProgress);
     corrected_s_ = feed.TimeOffsets();
-    const Detector detector(scene_);
+    const Detector detector(scene_, rig_);
     base::Progress progress("frames", feed.expected_frames());
     while (const auto set = feed.Next()) {
       const std::vector<CameraDetections> seen = detector.Markers(*set);

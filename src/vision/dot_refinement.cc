@@ -56,7 +56,11 @@ std::optional<BlurredEllipse> Sharpen(const Ellipse& from, const Moments& m) {
   const Eigen::Vector2d variance = axes.eigenvalues();
   const double difference = variance(1) - variance(0);
   const double blur2 = 0.5 * (variance.sum() - std::hypot(difference, m.area / (2 * M_PI)));
-  const double blur2_bounded = std::clamp(blur2, 0.1, 4.0);
+  // Clutter would pass for a small dot under a large blur, at the cost of a large patch.
+  constexpr double kMaxBlur = 2, kMaxBlurShare = 0.35;  // px; of the dot's mean radius, if larger
+  const double max_blur2 =
+      std::max(kMaxBlur * kMaxBlur, kMaxBlurShare * kMaxBlurShare * m.area / M_PI);
+  const double blur2_bounded = std::clamp(blur2, 0.1, max_blur2);
   const Eigen::Vector2d half2 = 4 * (variance.array() - blur2_bounded);
   if (!(half2(0) > 0.25)) return std::nullopt;
   const Eigen::Matrix2d shape =

@@ -13,12 +13,14 @@ namespace {
 std::vector<BandPixel> CutBand(const cv::Mat& grey, const EdgeSearch& search,
                                const Eigen::Vector2d& middle, const Eigen::Vector2d& along,
                                double half_length) {
+  constexpr double kMaxBend = 2;  // px
   const Eigen::Vector2d reach =
-      half_length * along.cwiseAbs() + search.reach * search.outward.cwiseAbs();
+      half_length * along.cwiseAbs() + (search.reach + kMaxBend) * search.outward.cwiseAbs();
   const int x0 = std::max(0, static_cast<int>(std::ceil(middle.x() - reach.x())));
   const int x1 = std::min(grey.cols - 1, static_cast<int>(std::floor(middle.x() + reach.x())));
   const int y0 = std::max(0, static_cast<int>(std::ceil(middle.y() - reach.y())));
   const int y1 = std::min(grey.rows - 1, static_cast<int>(std::floor(middle.y() + reach.y())));
+  const double length = (search.to - search.from).norm();
   std::vector<BandPixel> band;
   for (int y = y0; y <= y1; ++y) {
     const uchar* row = grey.ptr<uchar>(y);
@@ -26,8 +28,12 @@ std::vector<BandPixel> CutBand(const cv::Mat& grey, const EdgeSearch& search,
       const Eigen::Vector2d d = Eigen::Vector2d(x, y) - middle;
       const double u = along.dot(d);
       const double v = search.outward.dot(d);
-      if (std::abs(u) > half_length || std::abs(v) > search.reach) continue;
-      band.push_back({u, v, static_cast<double>(row[x])});
+      if (std::abs(u) > half_length) continue;
+      const double on_line = search.bend ? v - search.bend(0.5 + u / length) : v;
+      if (std::abs(on_line) > search.reach) continue;
+      const double stray =
+          search.stray ? search.stray(middle + d - (v - on_line) * search.outward) : 0;
+      band.push_back({u, on_line, row[x] - stray});
     }
   }
   return band;
@@ -46,7 +52,7 @@ std::optional<Step> Guess(const std::vector<BandPixel>& band, const EdgeSearch& 
   }
   if (count[0] < 4 || count[1] < 4) return std::nullopt;
   const double low = sum[0] / count[0];
-  return Step{low, sum[1] / count[1] - low, 0.8, 0, 0};
+  return Step{low, sum[1] / count[1] - low, search.blur.mean, 0, 0};
 }
 
 }  // namespace
@@ -57,9 +63,8 @@ double Edge::OffsetVariance(const Eigen::Vector2d& p) const {
 }
 
 std::optional<Edge> FitEdge(const cv::Mat& grey, const EdgeSearch& search) {
-  constexpr double kMinHalfLength = 3;   // px
-  constexpr double kMinRise = 15;        // grey levels
-  constexpr double kModelError = 0.004;  // px; a lens's blur is not quite a normal distribution
+  constexpr double kMinHalfLength = 3;  // px
+  constexpr double kMinRise = 15;       // grey levels
   const Eigen::Vector2d along = (search.to - search.from).normalized();
   const Eigen::Vector2d middle = 0.5 * (search.from + search.to);
   const double half_length = 0.5 * (search.to - search.from).norm() - search.end_margin;
@@ -67,12 +72,23 @@ std::optional<Edge> FitEdge(const cv::Mat& grey, const EdgeSearch& search) {
   const std::vector<BandPixel> band = CutBand(grey, search, middle, along, half_length);
   const std::optional<Step> guess = Guess(band, search);
   if (!guess || guess->rise * search.rise < kMinRise) return std::nullopt;
-  const std::optional<FittedStep> fit = FitStep(band, *guess, half_length, search.reach);
+  const std::optional<FittedStep> fit =
+      FitStep(band, *guess, half_length, search.reach, search.blur);
   if (!fit || fit->step.rise * search.rise < kMinRise) return std::nullopt;
   const Step& step = fit->step;
-  Edge edge{middle,          along,    search.outward,       {step.a, step.b}, fit->covariance,
-            fit->clustering, step.low, step.low + step.rise, step.blur,        fit->noise};
-  edge.covariance(0, 0) += kModelError * kModelError;
+  Edge edge{middle,
+            along,
+            search.outward,
+            {step.a, step.b},
+            fit->covariance,
+            fit->clustering,
+            fit->pieces,
+            fit->roughness,
+            fit->rough_pixels,
+            step.low,
+            step.low + step.rise,
+            step.blur,
+            fit->noise};
   return edge;
 }
 

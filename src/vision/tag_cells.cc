@@ -17,13 +17,7 @@ TagCells DrawTag(const std::string& family, int id, const std::string& where, in
     throw base::InputError(
         where, fmt::format("{} has no tag {}, its ids are 0 to {}", family, id, made->ncodes - 1));
   }
-  image_u8_t* image = apriltag_to_image(made.get(), static_cast<uint32_t>(id));
-  TagCells tag;
-  tag.cells = cv::Mat1b(image->height, image->width, image->buf, image->stride).clone();
-  tag.margin = (made->total_width - made->width_at_border) / 2;
-  image_u8_destroy(image);
-  if (maker.turned_by_opencv) cv::flip(tag.cells, tag.cells, -1);  // by half a turn
-  return tag;
+  return CellsOf(maker, made.get(), id);
 }
 
 }  // namespace softforce::vision

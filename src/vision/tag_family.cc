@@ -44,4 +44,14 @@ apriltag_family_t* CreateFamily(const FamilyMaker& maker, int black_border) {
   return family;
 }
 
+TagCells CellsOf(const FamilyMaker& maker, apriltag_family_t* family, int id) {
+  TagCells tag;
+  image_u8_t* image = apriltag_to_image(family, static_cast<uint32_t>(id));
+  tag.cells = cv::Mat1b(image->height, image->width, image->buf, image->stride).clone();
+  tag.margin = (family->total_width - family->width_at_border) / 2;
+  image_u8_destroy(image);
+  if (maker.turned_by_opencv) cv::flip(tag.cells, tag.cells, -1);  // by half a turn
+  return tag;
+}
+
 }  // namespace softforce::vision

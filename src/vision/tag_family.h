@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "softforce/vision/tag_cells.h"
+
 namespace softforce::vision {
 
 // How a tag stands upright is a matter of convention: OpenCV draws the classic families turned by
@@ -22,5 +24,8 @@ const FamilyMaker& MakerOf(const std::string& family, const std::string& where =
 // The family with so many cells of black around its codes, where AprilTag has one. To be destroyed
 // by `maker`.
 apriltag_family_t* CreateFamily(const FamilyMaker& maker, int black_border);
+
+// A tag of that family, see DrawTag; the id must be one of its own.
+TagCells CellsOf(const FamilyMaker& maker, apriltag_family_t* family, int id);
 
 }  // namespace softforce::vision

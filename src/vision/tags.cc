@@ -52,11 +52,14 @@ struct TagDetector::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  std::optional<Tag> Accept(const cv::Mat& grey, const apriltag_detection_t& found) const;
+  std::optional<Tag> Accept(const cv::Mat& grey, const apriltag_detection_t& found,
+                            const cv::Point& origin, const camera::Lens* lens) const;
 };
 
 std::optional<Tag> TagDetector::State::Accept(const cv::Mat& grey,
-                                              const apriltag_detection_t& found) const {
+                                              const apriltag_detection_t& found,
+                                              const cv::Point& origin,
+                                              const camera::Lens* lens) const {
   if (found.decision_margin < options.min_decision_margin) return std::nullopt;
   Tag tag;
   tag.family = maker.name;
@@ -65,10 +68,10 @@ std::optional<Tag> TagDetector::State::Accept(const cv::Mat& grey,
   // AprilTag lists bottom left, bottom right, top right, top left of the tag as it draws it.
   for (int i = 0; i < 4; ++i) {
     const double* p = found.p[(maker.turned_by_opencv ? 5 - i : 3 - i) % 4];
-    tag.corners[i] = Eigen::Vector2d(p[0], p[1]).array() - kHalfPixel;
+    tag.corners[i] = Eigen::Vector2d(p[0] + origin.x, p[1] + origin.y).array() - kHalfPixel;
   }
-  const std::optional<RefinedCorners> refined =
-      RefineCorners(grey, tag.corners, family->width_at_border, family->reversed_border);
+  const std::optional<RefinedCorners> refined = RefineCorners(
+      grey, tag.corners, {CellsOf(maker, family, found.id), family->reversed_border, lens});
   if (!refined) return std::nullopt;
   tag.corners = refined->corners;
   tag.corner_covariances = refined->covariances;
@@ -86,16 +89,26 @@ TagDetector::TagDetector(const std::string& family, const TagOptions& options)
 TagDetector::~TagDetector() = default;
 TagDetector::TagDetector(TagDetector&&) noexcept = default;
 
-std::vector<Tag> TagDetector::Detect(const cv::Mat& grey) const {
+std::vector<Tag> TagDetector::Detect(const cv::Mat& grey, const camera::Lens* lens) const {
+  return DetectIn(grey, cv::Rect(0, 0, grey.cols, grey.rows), state_->options.decimate, lens);
+}
+
+std::vector<Tag> TagDetector::DetectIn(const cv::Mat& grey, const cv::Rect& area, double decimate,
+                                       const camera::Lens* lens) const {
   CV_Assert(grey.type() == CV_8UC1);
+  if (area.empty()) return {};
+  const cv::Mat part = grey(area);
   // AprilTag only reads the picture; its interface wants it writable all the same.
-  image_u8_t view{grey.cols, grey.rows, static_cast<int>(grey.step), const_cast<uchar*>(grey.data)};
+  image_u8_t view{part.cols, part.rows, static_cast<int>(part.step), const_cast<uchar*>(part.data)};
+  state_->detector->quad_decimate = static_cast<float>(decimate);
   zarray_t* found = apriltag_detector_detect(state_->detector, &view);
   std::vector<Tag> tags;
   for (int i = 0; i < zarray_size(found); ++i) {
     apriltag_detection_t* detection = nullptr;
     zarray_get(found, i, &detection);
-    if (auto tag = state_->Accept(grey, *detection)) tags.push_back(std::move(*tag));
+    if (auto tag = state_->Accept(grey, *detection, area.tl(), lens)) {
+      tags.push_back(std::move(*tag));
+    }
   }
   apriltag_detections_destroy(found);
   std::sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) {

@@ -20,7 +20,7 @@ camera::Rig PlacedRig() {
 TEST(FindRig, TakesPlaceAndCovarianceFromTheRigIfThereAreNoFiducials) {
   const scene::Scene scene;
   const camera::Rig rig = PlacedRig();
-  const Standing standing = FindRig(scene, rig, Detector(scene), {});
+  const Standing standing = FindRig(scene, rig, Detector(scene, rig), {});
   EXPECT_EQ(standing.T_rig_robot.matrix(), rig.T_rig_robot->matrix());
   EXPECT_EQ(standing.covariance, rig.T_rig_robot_covariance);
   EXPECT_FALSE(standing.from_fiducials.has_value());
@@ -28,7 +28,8 @@ TEST(FindRig, TakesPlaceAndCovarianceFromTheRigIfThereAreNoFiducials) {
 
 TEST(FindRig, RefusesARigOfWhichNothingSaysWhereItStands) {
   const scene::Scene scene;
-  EXPECT_THROW(FindRig(scene, {}, Detector(scene), {}), base::InputError);
+  const camera::Rig rig;
+  EXPECT_THROW(FindRig(scene, rig, Detector(scene, rig), {}), base::InputError);
 }
 
 TEST(PointCovariance, IsThatOfThePointUnderSmallMotionsOfTheRig) {
