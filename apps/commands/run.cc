@@ -20,7 +20,7 @@ struct RunArguments {
   std::vector<std::string> cameras;
   std::string frames;
   std::string correct_mesh = "none";
-  std::string method, force_walk;
+  std::string method, allocation, force_walk;
   std::string duration, record;
   LiveArguments live;
   bool no_overlay = false;
@@ -68,10 +68,21 @@ estimation::EstimationMethod ParseMethod(const std::string& name) {
                          "Write for example: --method linear");
 }
 
+allocation::Rule ParseRule(const std::string& name) {
+  using allocation::Rule;
+  for (const auto rule : {Rule::kOptimal, Rule::kNearest}) {
+    if (name == allocation::Name(rule)) return rule;
+  }
+  throw base::InputError("--allocation",
+                         fmt::format("got \"{}\", expected optimal or nearest", name),
+                         "Write for example: --allocation nearest");
+}
+
 int Run(RunArguments* arguments) {
   pipeline::RunOptions& options = arguments->options;
   estimation::EstimatorOptions& estimator = options.tracker.estimator;
   estimator.method = ParseMethod(arguments->method);
+  options.tracker.observe.allocation.rule = ParseRule(arguments->allocation);
   if (!arguments->force_walk.empty()) {
     estimator.force_walk =
         base::ParseQuantity(arguments->force_walk, base::Dimension::kForce, 1, "--force-walk")[0];
@@ -110,6 +121,9 @@ Command AddRun(CLI::App* program) {
       ->allow_extra_args(false);
   app->add_option("--frames", arguments->frames,
                   "A:B: frames A up to but not including B, counted from 0; default all");
+  app->add_option("--every", arguments->options.every,
+                  "Process every so many frames only, as a camera that is so much slower would")
+      ->capture_default_str();
   app->add_option("--duration", arguments->duration,
                   "End after so much time, as \"60 s\"; default: at the end of the recording, or "
                   "with Ctrl-C");
@@ -136,6 +150,13 @@ Command AddRun(CLI::App* program) {
   app->add_option("--method", arguments->method,
                   "converged: forces and equilibrium converge in every frame; linear: the paper's "
                   "single linear step per frame, plain least squares, for comparison")
+      ->capture_default_str();
+  arguments->allocation = allocation::Name(arguments->options.tracker.observe.allocation.rule);
+  app->add_option(
+         "--allocation", arguments->allocation,
+         "Which dot is which marker. optimal: the best assignment in all cameras together; "
+         "nearest: the paper's rule, the nearest dot within a threshold displacement, for "
+         "comparison")
       ->capture_default_str();
   app->add_option("--force-walk", arguments->force_walk,
                   "How far a force component may go from one frame to the next (standard "

@@ -33,7 +33,35 @@ Eigen::MatrixXd GatedDistances(const std::vector<PredictedPixel>& predictions,
   return distances;
 }
 
+// The paper's rule. A detection that is nearest to several features goes to the nearest of them.
+std::vector<AllocatedPixel> AllocateNearest(const std::vector<PredictedPixel>& predictions,
+                                            const std::vector<DetectedPixel>& detections,
+                                            double threshold) {
+  std::vector<AllocatedPixel> allocated(predictions.size());
+  std::vector<int> owner(detections.size(), -1);
+  std::vector<double> nearest_to(detections.size(), kInfinity);
+  for (size_t f = 0; f < predictions.size(); ++f) {
+    int nearest = -1;
+    double least = threshold > 0 ? threshold : kInfinity;
+    for (size_t d = 0; d < detections.size(); ++d) {
+      const double distance = (detections[d].pixel - predictions[f].pixel).norm();
+      if (!(distance <= least)) continue;
+      nearest = static_cast<int>(d);
+      least = distance;
+    }
+    if (nearest < 0 || least >= nearest_to[nearest]) continue;
+    if (owner[nearest] >= 0) allocated[owner[nearest]] = {};
+    owner[nearest] = static_cast<int>(f);
+    nearest_to[nearest] = least;
+    allocated[f].status = AllocatedPixel::Status::kSeen;
+    allocated[f].detection = nearest;
+  }
+  return allocated;
+}
+
 }  // namespace
+
+const char* Name(Rule rule) { return rule == Rule::kOptimal ? "optimal" : "nearest"; }
 
 void AllocationOptions::Check() const {
   if (!(gate_probability > 0 && gate_probability < 1)) {
@@ -51,6 +79,9 @@ std::vector<AllocatedPixel> Allocate(const std::vector<PredictedPixel>& predicti
                                      const std::vector<DetectedPixel>& detections,
                                      const AllocationOptions& options) {
   options.Check();
+  if (options.rule == Rule::kNearest) {
+    return AllocateNearest(predictions, detections, options.threshold_displacement_px);
+  }
   const double gate = geometry::ChiSquareQuantile(options.gate_probability, 2);
   return AssignGated(
       GatedDistances(predictions, detections, gate, options.threshold_displacement_px), gate,

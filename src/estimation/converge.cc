@@ -26,6 +26,7 @@ constexpr double kSettled = 0.01;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
 constexpr int kPatience = 6;                // iterations, before the response is held to be stale
 constexpr int kMaxHalvings = 8;
+constexpr int kLoadHalvings = 1;  // within a step, which is itself halved if it fails
 
 // Whether a cost (half of χ²) has not grown by more than the body's distance from its equilibrium
 // can explain.
@@ -135,14 +136,18 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
       return;
     }
     const LoadedBody::Pose before = body.pose();
-    const Eigen::VectorXd step = fit.parameters - *parameters;
+    const Eigen::VectorXd step =
+        CarefulStep(used, *blocks, *parameters, fit.parameters - *parameters, bounds);
     bool moved = false;
     double share = 1;
     for (int halving = 0; halving <= kMaxHalvings && !moved; ++halving, share /= 2) {
       const Eigen::VectorXd trial = *parameters + share * step;
       const double move = body.MoveBy(trial.head(num_loads()) - before.loads);
       const double tolerance = std::max(finest, kFollowing * move);
-      if (!body.Move(trial.head(num_loads()), told, tolerance, iteration > 0).ok()) continue;
+      if (body.factorisations() - factorised_before > options.max_factorisations) break;
+      if (!body.Move(trial.head(num_loads()), told, tolerance, iteration > 0, kLoadHalvings).ok()) {
+        continue;
+      }
       std::vector<ResidualBlock> there = Linearise(used, prior, trial);
       const double cost_there = RobustCost(there, trial, trial, options.loss_scale);
       moved = IsNoWorse(cost_there, cost);
@@ -158,7 +163,7 @@ void ForceEstimator::State::Fit(const std::vector<WhitenedObservation>& used,
       // it seemed, and so have fitted better than it does; or its response may be stale. Then begin
       // again from there.
       if (followed_to > kSettled * finest) {
-        moved = body.Move(before.loads, told, kSettled * finest, true).ok();
+        moved = body.Move(before.loads, told, kSettled * finest, true, kLoadHalvings).ok();
         followed_to = kSettled * finest;
       } else if (!renewed) {
         moved = renewed = body.RenewResponse();
@@ -236,6 +241,7 @@ ForceEstimate ForceEstimator::State::Converge(const std::vector<Observation>& ob
     estimate.reason = "the body has no equilibrium under the actuation: " + reached.BriefReport();
     return estimate;
   }
+  factorised_before = body.factorisations();
   double scale = LargestDisplacement(observations);
   for (int round = 0; round < kMaxScaleRounds; ++round) {
     const int iterations = estimate.iterations;

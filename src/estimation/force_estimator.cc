@@ -9,6 +9,15 @@
 #include "softforce/base/input_error.h"
 
 namespace softforce::estimation {
+namespace {
+
+// An empty actuation is none, for bodies without actuators.
+fem::Actuation Told(const fem::Actuation& actuation, const fem::Body& body) {
+  const bool none = actuation.cables.empty() && actuation.pressures.empty();
+  return none ? fem::NoActuation(body) : actuation;
+}
+
+}  // namespace
 
 void EstimatorOptions::Check() const {
   const auto require = [](bool holds, const char* option, const char* rule) {
@@ -27,6 +36,7 @@ void EstimatorOptions::Check() const {
           "must be at least 0 and below 1");
   require(min_singular_ratio > 0, "min_singular_ratio", "must be greater than 0");
   require(max_iterations >= 1, "max_iterations", "must be 1 or more");
+  require(max_factorisations >= 1, "max_factorisations", "must be 1 or more");
   require(tolerance > 0, "tolerance", "must be greater than 0");
   require(max_staleness >= 0, "max_staleness", "must be 0 m or more");
 }
@@ -177,41 +187,80 @@ void ForceEstimator::SetBounds(int site, double lowest, double highest) {
   state_->sites[site].highest = highest;
 }
 
-ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observations,
-                                       const fem::Actuation& actuation) {
-  State& s = *state_;
-  fem::Actuation told = actuation;  // an empty one is none, for bodies without actuators
-  if (told.cables.empty() && told.pressures.empty()) told = fem::NoActuation(s.solver->body());
+ForceEstimate ForceEstimator::State::EstimateFrame(const std::vector<Observation>& observations,
+                                                   const fem::Actuation& told) {
   ForceEstimate estimate;
-  estimate.reason = s.InputProblem(told);
+  estimate.reason = InputProblem(told);
   if (!estimate.reason.empty()) {
     estimate.status = ForceEstimate::Status::kInvalidInput;
     estimate.rejected.assign(observations.size(), 0);
     return estimate;
   }
-  const LoadedBody::Pose before = s.body.pose();
-  const int factorised = s.body.factorisations();
-  s.walk_covariance.diagonal().array() += s.options.force_walk * s.options.force_walk;
-  estimate = s.options.method == EstimationMethod::kLinearStep ? s.StepLinearly(observations, told)
-                                                               : s.Converge(observations, told);
-  estimate.factorisations = s.body.factorisations() - factorised;
+  const int factorised = body.factorisations();
+  estimate = options.method == EstimationMethod::kLinearStep ? StepLinearly(observations, told)
+                                                             : Converge(observations, told);
+  estimate.factorisations = body.factorisations() - factorised;
   if (estimate.ok()) {
-    s.last_intensity = estimate.intensity;
-    s.walk_covariance = estimate.covariance;
-  } else {
-    // A linear step may have left a shape from which there is no next one: begin again.
-    const bool stuck = s.options.method == EstimationMethod::kLinearStep &&
-                       estimate.status == ForceEstimate::Status::kNotConverged;
-    s.body.Return(stuck ? s.at_rest : before);
-    s.body.ForgetResponse();
+    last_intensity = estimate.intensity;
+    walk_covariance = estimate.covariance;
+    return estimate;
   }
+  // A linear step may have left a shape from which there is no next one: begin again.
+  const bool stuck = options.method == EstimationMethod::kLinearStep &&
+                     estimate.status == ForceEstimate::Status::kNotConverged;
+  last_intensity = before_frame.intensity;
+  walk_covariance = before_frame.covariance;
+  body.Return(stuck ? at_rest : LoadedBody::Pose{before_frame.body, before_frame.loads});
+  body.ForgetResponse();
   return estimate;
+}
+
+ForceEstimate ForceEstimator::Estimate(const std::vector<Observation>& observations,
+                                       const fem::Actuation& actuation) {
+  State& s = *state_;
+  const fem::Actuation told = Told(actuation, s.solver->body());
+  if (s.InputProblem(told).empty()) {
+    s.walk_covariance.diagonal().array() += s.options.force_walk * s.options.force_walk;
+  }
+  s.before_frame = Remember();
+  return s.EstimateFrame(observations, told);
+}
+
+ForceEstimate ForceEstimator::EstimateAgain(const std::vector<Observation>& observations,
+                                            const fem::Actuation& actuation) {
+  State& s = *state_;
+  s.last_intensity = s.before_frame.intensity;
+  s.walk_covariance = s.before_frame.covariance;
+  return s.EstimateFrame(observations, Told(actuation, s.solver->body()));
+}
+
+ForceEstimator::Memory ForceEstimator::Remember() const {
+  const LoadedBody::Pose& pose = state_->body.pose();
+  return {pose.state, pose.loads, state_->last_intensity, state_->walk_covariance};
+}
+
+void ForceEstimator::Recall(const Memory& memory) {
+  State& s = *state_;
+  s.body.Return({memory.body, memory.loads});
+  s.body.ForgetResponse();
+  s.last_intensity = memory.intensity;
+  s.walk_covariance = memory.covariance;
+}
+
+fem::SolveSummary ForceEstimator::StartFrom(const Eigen::VectorXd& intensity,
+                                            const fem::Actuation& actuation) {
+  State& s = *state_;
+  const fem::Actuation told = Told(actuation, s.solver->body());
+  fem::SolveSummary summary;
+  if (!s.InputProblem(told).empty()) return summary;
+  Eigen::VectorXd loads = s.body.pose().loads;
+  loads.head(s.num_components()) = intensity;
+  return s.MoveTo(loads, told);
 }
 
 fem::SolveSummary ForceEstimator::Advance(const fem::Actuation& actuation) {
   State& s = *state_;
-  fem::Actuation told = actuation;
-  if (told.cables.empty() && told.pressures.empty()) told = fem::NoActuation(s.solver->body());
+  const fem::Actuation told = Told(actuation, s.solver->body());
   fem::SolveSummary summary;
   if (!s.InputProblem(told).empty()) return summary;
   if (s.options.method == EstimationMethod::kConverged) {

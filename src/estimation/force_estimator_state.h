@@ -54,6 +54,11 @@ struct ForceEstimator::State {
   void Fit(const std::vector<WhitenedObservation>& used, const OffsetPrior& prior,
            const fem::Actuation& told, Eigen::VectorXd* parameters,
            std::vector<ResidualBlock>* blocks, ForceEstimate* estimate);
+  // `step` of the parameters, where the linear answer may be believed that far; else a shorter one.
+  Eigen::VectorXd CarefulStep(const std::vector<WhitenedObservation>& used,
+                              const std::vector<ResidualBlock>& blocks,
+                              const Eigen::VectorXd& parameters, const Eigen::VectorXd& step,
+                              const Bounds& bounds) const;
   // Theorem 2: whether the observations determine every load; else the status says which not.
   bool AreLoadsObservable(const std::vector<ResidualBlock>& blocks, ForceEstimate* estimate) const;
   void Conclude(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& parameters,
@@ -70,10 +75,15 @@ struct ForceEstimator::State {
   geometry::Matrix6d registration_covariance = geometry::Matrix6d::Zero();
   LoadedBody body;
   LoadedBody::Pose at_rest;
-  double diagonal = NAN;  // m, of the body at rest
+  double diagonal = NAN;      // m, of the body at rest
+  int factorised_before = 0;  // by the body, before the frame at hand was fitted
+
+  ForceEstimate EstimateFrame(const std::vector<Observation>& observations,
+                              const fem::Actuation& told);
 
   Eigen::VectorXd last_intensity;   // N, of the last usable estimate
   Eigen::MatrixXd walk_covariance;  // N², of the forces about it by now; empty before the first
+  ForceEstimator::Memory before_frame;
 };
 
 // Spreads a covariance given per load over the actuators, see ForceEstimate.

@@ -74,7 +74,8 @@ void LoadedBody::LearnFrom(const Pose& before, const Eigen::VectorXd& change, do
 }
 
 fem::SolveSummary LoadedBody::Move(const Eigen::VectorXd& loads, const fem::Actuation& told,
-                                   double tolerance, bool continued) {
+                                   double tolerance, bool continued,
+                                   std::optional<int> max_load_halvings) {
   // A small change starts from the linear answer; Newton's method does the rest. Over a large one
   // the linear answer stretches what should turn, and the old shape is the better start.
   Pose trial = pose_;
@@ -84,11 +85,12 @@ fem::SolveSummary LoadedBody::Move(const Eigen::VectorXd& loads, const fem::Actu
                          MoveBy(change) <= max_staleness_;
   if (predicted) trial.state.u += (response_ * change).reshaped(3, trial.state.u.cols());
   const fem::LoadCase load = LoadOf(loads, told);
-  fem::SolveSummary summary = solver_->Approach(load, tolerance, continued, &trial.state);
+  fem::SolveSummary summary =
+      solver_->Approach(load, tolerance, continued, &trial.state, max_load_halvings);
   factorisations_ += summary.factorisations;
   if (!summary.ok() && predicted) {
     trial = pose_;
-    summary = solver_->Approach(load, tolerance, false, &trial.state);
+    summary = solver_->Approach(load, tolerance, false, &trial.state, max_load_halvings);
     factorisations_ += summary.factorisations;
   }
   if (!summary.ok()) return summary;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "softforce/estimation/observation.h"
@@ -41,9 +42,10 @@ class LoadedBody {
   bool IsAt(const Eigen::VectorXd& loads, const fem::Actuation& told) const;
 
   // Moves to within `tolerance` (m) of the equilibrium, the response with it; if there is none the
-  // pose stays, and the summary says why. `continued`: see StaticSolver::Approach.
+  // pose stays, and the summary says why. `continued`, `max_load_halvings`: see
+  // StaticSolver::Approach.
   fem::SolveSummary Move(const Eigen::VectorXd& loads, const fem::Actuation& told, double tolerance,
-                         bool continued);
+                         bool continued, std::optional<int> max_load_halvings = std::nullopt);
 
   // Computes the response anew from the tangent at the pose; false if that is not positive
   // definite.

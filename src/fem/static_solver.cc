@@ -131,16 +131,19 @@ LoadCase Between(const Equilibrium& from, const LoadCase& to, double share) {
 
 SolveSummary StaticSolver::Solve(const LoadCase& load, Equilibrium* state) {
   state_->steps_to_load = 0;
-  return Reach(load, state_->options.tolerance * state_->diagonal, state);
+  return Reach(load, state_->options.tolerance * state_->diagonal,
+               state_->options.max_load_halvings, state);
 }
 
 SolveSummary StaticSolver::Approach(const LoadCase& load, double tolerance, bool continued,
-                                    Equilibrium* state) {
+                                    Equilibrium* state, std::optional<int> max_load_halvings) {
   if (!continued) state_->steps_to_load = 0;
-  return Reach(load, tolerance, state);
+  return Reach(load, tolerance, max_load_halvings.value_or(state_->options.max_load_halvings),
+               state);
 }
 
-SolveSummary StaticSolver::Reach(const LoadCase& load, double tolerance, Equilibrium* state) {
+SolveSummary StaticSolver::Reach(const LoadCase& load, double tolerance, int max_load_halvings,
+                                 Equilibrium* state) {
   State& s = *state_;
   assert(load.actuation.cables.size() == s.body.cables.size());
   assert(load.actuation.pressures.size() == s.body.chambers.size());
@@ -150,7 +153,7 @@ SolveSummary StaticSolver::Reach(const LoadCase& load, double tolerance, Equilib
   double reached = 0;
   double stride = 1;
   bool just_failed = false;
-  const double least = std::ldexp(1.0, -s.options.max_load_halvings);
+  const double least = std::ldexp(1.0, -max_load_halvings);
   while (reached < 1) {
     const double next = std::min(1.0, reached + stride);
     Equilibrium trial = *state;

@@ -59,6 +59,11 @@ Standing CaptureSource::Start(const Tell&) {
   return standing_;
 }
 
+bool CaptureSource::IsAskedFor(int frame) const {
+  return frame >= options_.first_frame && frame < options_.end_frame &&
+         (frame - options_.first_frame) % options_.every == 0;
+}
+
 bool CaptureSource::Next(FrameInWork* frame) {
   for (; next_ < points_.frames.size(); ++next_) {
     stopped_ = options_.stop != nullptr && *options_.stop;
@@ -67,7 +72,7 @@ bool CaptureSource::Next(FrameInWork* frame) {
         next.time_s - points_.frames.front().time_s >= options_.duration_s) {
       return false;
     }
-    if (next.frame < options_.first_frame) continue;
+    if (!IsAskedFor(next.frame)) continue;
     frame->set.frame = next.frame;
     frame->set.time_s = next.time_s;
     frame->detections = {{{}, {}, next.points}};
@@ -88,9 +93,8 @@ void CaptureSource::Estimate(const World&, FrameInWork* frame, Tracker* tracker)
 
 int CaptureSource::expected_frames() const {
   return static_cast<int>(std::count_if(
-      points_.frames.begin(), points_.frames.end(), [&](const scene::MeasuredFrame& frame) {
-        return frame.frame >= options_.first_frame && frame.frame < options_.end_frame;
-      }));
+      points_.frames.begin(), points_.frames.end(),
+      [&](const scene::MeasuredFrame& frame) { return IsAskedFor(frame.frame); }));
 }
 
 std::vector<std::filesystem::path> CaptureSource::Inputs() const { return InputsOf(scene_, {}); }

@@ -22,6 +22,8 @@ class CaptureSource : public MarkerSource {
   std::vector<std::string> ShortOf() const override;
 
  private:
+  bool IsAskedFor(int frame) const;
+
   const scene::Scene& scene_;
   const RunOptions& options_;
   const camera::Rig no_cameras_;

@@ -147,6 +147,7 @@ FeatureSightings AllocateTagCorners(const scene::Markers& markers, const camera:
   const double floor2 = options.pixel_floor * options.pixel_floor;
   FeatureSightings sightings;
   sightings.pixels.resize(features.size());
+  sightings.dots.resize(features.size());
   for (size_t f = 0; f < features.size(); ++f) {
     for (int c = 0; c < static_cast<int>(cameras.size()); ++c) {
       const vision::Tag* tag = FindTag(cameras[c], markers, markers.points[features[f].marker].id);

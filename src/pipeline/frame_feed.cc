@@ -73,6 +73,13 @@ FrameFeed::~FrameFeed() = default;
 
 // The rig is placed by the first frames of a recording: those of a part would be others.
 void FrameFeed::RefuseToRecordAPart() const {
+  if (options_.every > 1) {
+    throw base::InputError("--record",
+                           fmt::format("cannot go with --every {}: the frames left out, which help "
+                                       "to place the rig, would not be recorded",
+                                       options_.every),
+                           "Leave out --every or --record.");
+  }
   if (options_.first_frame == 0 && options_.end_frame >= options_.registration_frames) return;
   throw base::InputError(
       "--record",
@@ -125,6 +132,7 @@ std::optional<vision::FrameSet> FrameFeed::Next() {
     if (set->frame < options_.first_frame) continue;
     // The times of frames say when it is over; the clock does if the cameras stay away.
     if (live_ && set->frame == 0) watch_->StopAfter(options_.duration_s + kGrace);
+    if ((set->frame - options_.first_frame) % options_.every != 0) continue;
     Record(*set);
     return set;
   }
@@ -159,7 +167,9 @@ void FrameFeed::Finish() {
 
 int FrameFeed::expected_frames() const {
   const int announced = source_->announced_frames();
-  return announced == 0 ? 0 : std::min(options_.end_frame, announced) - options_.first_frame;
+  if (announced == 0) return 0;
+  const int frames = std::min(options_.end_frame, announced) - options_.first_frame;
+  return (frames + options_.every - 1) / options_.every;
 }
 
 std::optional<vision::RecorderReport> FrameFeed::Recorded() const {

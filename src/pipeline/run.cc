@@ -13,6 +13,10 @@ void RunOptions::Check() const {
                            fmt::format("{}:{} is no range of frames", first_frame, end_frame),
                            "Give A:B with 0 <= A < B: frames A up to but not including B.");
   }
+  if (every < 1) {
+    throw base::InputError("--every", fmt::format("got {}, must be 1 or more", every),
+                           "2 processes every second frame.");
+  }
   if (registration_frames < 1) {
     throw base::InputError("--registration-frames", "must be 1 or more");
   }

@@ -130,6 +130,8 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   }
   const RunOptions& options = facts.options;
   json["options"] = {{"first_frame", options.first_frame},
+                     {"every", options.every},
+                     {"allocation", allocation::Name(options.tracker.observe.allocation.rule)},
                      {"registration_frames", options.registration_frames},
                      {"watch_rig", options.watch_rig},
                      {"threads", options.threads > 0 ? options.threads : DefaultThreads()},

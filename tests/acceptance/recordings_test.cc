@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "acceptance/program.h"
 
@@ -45,6 +48,70 @@ INSTANTIATE_TEST_SUITE_P(Shared, EveryRecording,
                                            RecordingCase{"sheet_two_weights_tags", "20:29", 3},
                                            RecordingCase{"robot_tip_weight", "25:29", 5}),
                          [](const auto& instance) { return std::string(instance.param.name); });
+
+// Played faster, the body moves further between frames; allocation and forces must stay.
+struct FastCase {
+  const char* name;
+  int first_held;    // frame, from which on the load is at rest
+  double max_error;  // %, as at full rate
+  int every;
+};
+
+void PrintTo(const FastCase& recording, std::ostream* out) {
+  *out << recording.name << " every " << recording.every;
+}
+
+class EveryRecordingFaster : public ::testing::TestWithParam<FastCase> {};
+
+TEST_P(EveryRecordingFaster, KeepsAllocationAndForces) {
+  const FastCase& recording = GetParam();
+  const std::filesystem::path folder =
+      std::filesystem::path(SOFTFORCE_SOURCE_DIR) / "../shared/recordings" / recording.name;
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recording at " << folder;
+  const std::filesystem::path out =
+      testing::FreshFolder(fmt::format("{}_{}", recording.name, recording.every));
+
+  const testing::ProgramResult run = testing::RunProgram(
+      fmt::format("run '{}' --out '{}' --no-overlay --every {}", (folder / "scene.yaml").string(),
+                  out.string(), recording.every));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+
+  const auto truth = nlohmann::json::parse(testing::ReadText(folder / "truth.json"))["frames"];
+  for (const auto& row : testing::ReadTable(out / "markers.csv")) {
+    const int frame = std::atoi(row.at("frame").c_str());
+    const int marker = std::atoi(row.at("marker").c_str());
+    EXPECT_EQ(frame % recording.every, 0);
+    EXPECT_EQ(row.at("status"), "seen") << "frame " << frame << " marker " << marker;
+    const auto& place = truth[frame]["markers"]["pos"][marker];
+    const char* const columns[] = {"x_mm", "y_mm", "z_mm"};
+    for (int axis = 0; axis < 3; ++axis) {
+      // mm; far more than noise, and far less than the markers' spacing.
+      EXPECT_NEAR(std::atof(row.at(columns[axis]).c_str()), place[axis].get<double>(), 2);
+    }
+  }
+  double norm = 0, true_norm = 0;  // N, summed over forces and frames at rest
+  for (const auto& row : testing::ReadTable(out / "forces.csv")) {
+    const int frame = std::atoi(row.at("frame").c_str());
+    ASSERT_EQ(row.at("status"), "ok") << "frame " << frame;
+    if (frame < recording.first_held) continue;
+    const int force = std::atoi(row.at("force").c_str());
+    const auto& F = truth[frame]["forces"][force]["F"];
+    norm += std::atof(row.at("norm_N").c_str());
+    true_norm += std::hypot(F[0].get<double>(), F[1].get<double>(), F[2].get<double>());
+  }
+  ASSERT_GT(true_norm, 0);
+  EXPECT_LE(100 * std::abs(norm / true_norm - 1), recording.max_error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, EveryRecordingFaster,
+                         ::testing::Values(FastCase{"sheet_two_weights", 20, 3, 2},
+                                           FastCase{"sheet_two_weights", 20, 3, 3},
+                                           FastCase{"robot_tip_weight", 25, 5, 2},
+                                           FastCase{"robot_tip_weight", 25, 5, 3}),
+                         [](const auto& instance) {
+                           return fmt::format("{}_every_{}", instance.param.name,
+                                              instance.param.every);
+                         });
 
 // With the mesh's own error corrected, the forces are to be within 1 %, which neither the robot
 // (2.0 %, corrected 0.3 %) nor the sheet is without. The mesh behind the recordings is itself about

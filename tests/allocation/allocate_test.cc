@@ -53,6 +53,17 @@ TEST(Allocate, HoldsThePapersThreshold) {
             Status::kSeen);
 }
 
+TEST(Allocate, TakesTheNearestByThePapersRule) {
+  AllocationOptions options;
+  options.rule = Rule::kNearest;
+  options.threshold_displacement_px = 15;
+  // Both features are nearest to the first one's detection: the nearer one gets it.
+  const auto found = Allocate({Predicted(100, 100, 10), Predicted(120, 100, 10)},
+                              {Detected(113, 100), Detected(133, 100)}, options);
+  EXPECT_EQ(found[0].status, Status::kHidden);
+  EXPECT_EQ(found[1].detection, 0);
+}
+
 TEST(Allocate, StretchesItsGateAlongTheSoftDirection) {
   PredictedPixel soft{{100, 100}, Eigen::Vector2d(400, 1).asDiagonal()};
   EXPECT_EQ(Allocate({soft}, {Detected(140, 100)})[0].status, Status::kSeen);

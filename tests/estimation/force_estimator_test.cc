@@ -173,6 +173,70 @@ TEST(ForceEstimator, SaysThatForcesCannotBeToldApart) {
       << estimate.reason;
 }
 
+TEST(ForceEstimator, ALargeMotionWithForcesAlongTheStiffAxisTakesFewFactorisations) {
+  testing::BarExperiment bar;
+  bar.sites[0].directions = Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d force(0, 0.02, -0.03);  // N; bends the bar by a quarter of its length
+  fem::StaticSolver solver(bar.body, "bar");
+  ForceEstimator estimator(&solver, bar.sites, testing::ExactModel());
+
+  const ForceEstimate estimate = estimator.Estimate(bar.Observe(bar.Load(force), kNoise), {});
+
+  ASSERT_TRUE(estimate.ok()) << estimate.BriefReport();
+  const Eigen::VectorXd error = estimate.intensity - force;
+  // Squared standard deviations, of observations that are exact.
+  EXPECT_LT(error.dot(estimate.covariance.ldlt().solve(error)), 0.1);
+  // Of 100 allowed. Steps that follow the linear answer push until the bar buckles, and use up all.
+  EXPECT_LE(estimate.factorisations, 60);
+}
+
+TEST(ForceEstimator, GivesUpAFrameAfterABoundedNumberOfFactorisations) {
+  testing::BarExperiment bar;
+  fem::StaticSolver solver(bar.body, "bar");
+  EstimatorOptions options = testing::ExactModel();
+  options.max_factorisations = 1;
+  ForceEstimator estimator(&solver, bar.sites, options);
+  const Eigen::Vector2d force(0.02, -0.04);
+
+  const ForceEstimate estimate = estimator.Estimate(bar.Observe(bar.Load(force), kNoise), {});
+
+  EXPECT_EQ(estimate.status, ForceEstimate::Status::kNotConverged);
+  EXPECT_TRUE(estimator.state().u.isZero(0)) << "the state must stay as it was";
+}
+
+TEST(ForceEstimator, AFrameEstimatedAgainCountsOnce) {
+  const testing::BarExperiment bar;
+  fem::StaticSolver solver(bar.body, "bar");
+  EstimatorOptions options = testing::ExactModel();
+  options.force_walk = 1e-6;  // N: the last frame says as much as this one
+  ForceEstimator estimator(&solver, bar.sites, options);
+  const auto seen = bar.Observe(bar.Load(Eigen::Vector2d(0.002, -0.003)), kNoise);
+  ASSERT_TRUE(estimator.Estimate(seen, {}).ok());
+  const ForceEstimate once = estimator.Estimate(seen, {});
+  ASSERT_TRUE(once.ok());
+
+  const ForceEstimate again = estimator.EstimateAgain(seen, {});
+
+  ASSERT_TRUE(again.ok());
+  // Counted twice its variance would be smaller by a third; the tangent may be a little stale.
+  EXPECT_NEAR(again.covariance.trace() / once.covariance.trace(), 1, 0.02);
+}
+
+TEST(ForceEstimator, RecallsWhatItRemembered) {
+  const testing::BarExperiment bar;
+  fem::StaticSolver solver(bar.body, "bar");
+  ForceEstimator estimator(&solver, bar.sites, testing::ExactModel());
+  const ForceEstimator::Memory before = estimator.Remember();
+  ASSERT_TRUE(
+      estimator.Estimate(bar.Observe(bar.Load(Eigen::Vector2d(0.002, 0.003)), kNoise), {}).ok());
+  ASSERT_GT(estimator.state().u.norm(), 0);
+
+  estimator.Recall(before);
+
+  EXPECT_TRUE(estimator.state().u.isZero(0));
+  EXPECT_TRUE(estimator.intensity().isZero(0));
+}
+
 TEST(ForceEstimator, RefusesOptionsOutOfRange) {
   const auto refuses = [](auto change) {
     EstimatorOptions options;
@@ -187,6 +251,7 @@ TEST(ForceEstimator, RefusesOptionsOutOfRange) {
   refuses([](EstimatorOptions& o) { o.max_rejected_share = 1; });
   refuses([](EstimatorOptions& o) { o.min_singular_ratio = 0; });
   refuses([](EstimatorOptions& o) { o.max_iterations = 0; });
+  refuses([](EstimatorOptions& o) { o.max_factorisations = 0; });
   refuses([](EstimatorOptions& o) { o.tolerance = 0; });
   refuses([](EstimatorOptions& o) { o.max_staleness = -1; });
 }

@@ -96,6 +96,42 @@ TEST(Observe, ADotSeenByOneCameraGivesTwoEquations) {
   EXPECT_LT((seen.whitening * (1e-3 * ray)).norm(), 0.1);
 }
 
+TEST(Observe, ThreeCamerasLocateBetterThanTwo) {
+  Plate three;
+  camera::Camera top = three.rig.cameras[0];
+  top.name = "top";
+  top.T_camera_rig =
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()) * Eigen::Translation3d(-0.07, 0.15, 0.01);
+  three.rig.cameras.push_back(top);
+  const Plate two;
+
+  const auto by_three = three.Observe(three.See());
+  const auto by_two = two.Observe(two.See());
+
+  for (size_t f = 0; f < by_three.size(); ++f) {
+    ASSERT_EQ(by_three[f].cameras, 3);
+    EXPECT_LT((by_three[f].position - three.truth[f]).norm(), 1e-6);  // m
+    EXPECT_LT(by_three[f].covariance.trace(), by_two[f].covariance.trace());
+  }
+}
+
+TEST(Observe, OfThreeCamerasAnyTwoAreEnough) {
+  Plate plate;
+  camera::Camera top = plate.rig.cameras[0];
+  top.name = "top";
+  top.T_camera_rig =
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()) * Eigen::Translation3d(-0.07, 0.15, 0.01);
+  plate.rig.cameras.push_back(top);
+  for (int blind = 0; blind < 3; ++blind) {
+    auto cameras = plate.See();
+    cameras[blind].dots.erase(cameras[blind].dots.begin() + 4);
+    const FeatureObservation seen = plate.Observe(cameras)[4];
+    EXPECT_EQ(seen.status, FeatureObservation::Status::kSeen);
+    EXPECT_EQ(seen.cameras, 2);
+    EXPECT_LT((seen.position - plate.truth[4]).norm(), 1e-6);  // m
+  }
+}
+
 TEST(Observe, ClutterOfOtherSizeOrPlaceIsLeftAlone) {
   const Plate plate;
   auto cameras = plate.See();

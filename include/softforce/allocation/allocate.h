@@ -18,7 +18,19 @@ struct DetectedPixel {
   Eigen::Matrix2d covariance;  // px²
 };
 
+// How detections are given to features.
+enum class Rule {
+  kOptimal,  // the best assignment of all together, in gates of the prediction's covariance
+  // The paper's (VII.A): a feature takes the detection nearest to it within the threshold
+  // displacement, for comparison.
+  kNearest
+};
+
+// The name of a rule in options and files: "optimal", "nearest".
+const char* Name(Rule rule);
+
 struct AllocationOptions {
+  Rule rule = Rule::kOptimal;
   double gate_probability =
       0.999;  // share of right detections that the Mahalanobis gate lets through
   // The paper's threshold displacement, in pixels of this camera; 0 turns it off.

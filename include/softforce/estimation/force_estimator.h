@@ -40,8 +40,11 @@ struct EstimatorOptions {
   double rejection_probability = 1e-4;  // a right observation is rejected after the fit this often
   double max_rejected_share = 1.0 / 3;  // of the observations
   double min_singular_ratio =
-      1e-6;  // of the whitened compliance; below: forces cannot be told apart
-  int max_iterations = 30;
+      1e-6;                 // of the whitened compliance; below: forces cannot be told apart
+  int max_iterations = 30;  // of a fit
+  // Of the tangent, while one frame is fitted: beyond, it is given up as not converged, so that a
+  // frame with wrong observations does not hold up those after it.
+  int max_factorisations = 100;
   // Converged when neither the estimate nor any observed point would move by more than so many of
   // its standard deviations.
   double tolerance = 0.05;
@@ -140,6 +143,25 @@ class ForceEstimator {
   // was before; a linear step that led where there is no next one goes back to rest.
   ForceEstimate Estimate(const std::vector<Observation>& observations,
                          const fem::Actuation& actuation);
+
+  // The same frame once more, from other observations of it: the body starts where the last
+  // estimate has brought it, and what was known before the frame counts once. If the status is not
+  // kOk the state is that before the frame.
+  ForceEstimate EstimateAgain(const std::vector<Observation>& observations,
+                              const fem::Actuation& actuation);
+
+  // All that it remembers of the frames so far.
+  struct Memory {
+    fem::Equilibrium body;
+    Eigen::VectorXd loads;       // N, m or Pa, that the body is under
+    Eigen::VectorXd intensity;   // N, last usable
+    Eigen::MatrixXd covariance;  // N², of that with the walk since
+  };
+  Memory Remember() const;
+  void Recall(const Memory& memory);
+
+  // Takes the body to the equilibrium under other forces, for the next estimate to start there.
+  fem::SolveSummary StartFrom(const Eigen::VectorXd& intensity, const fem::Actuation& actuation);
 
   const fem::Equilibrium& state() const;
   const Eigen::VectorXd& intensity() const;  // N, last usable

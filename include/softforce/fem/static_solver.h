@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -125,8 +126,10 @@ class StaticSolver {
   // The same, but only until no node would move further than `tolerance` (m), often after a single
   // step: for a load that is itself still being looked for. Of several approaches that follow one
   // another closely, all but the first are `continued`: a kept tangent that makes them many is
-  // given up.
-  SolveSummary Approach(const LoadCase& load, double tolerance, bool continued, Equilibrium* state);
+  // given up. `max_load_halvings`: instead of that of the options, where the caller has smaller
+  // steps of its own to try.
+  SolveSummary Approach(const LoadCase& load, double tolerance, bool continued, Equilibrium* state,
+                        std::optional<int> max_load_halvings = std::nullopt);
 
   // One step of Newton's method with the tangent at `state`, without regard to how far that is
   // right (paper eqs. 3 and 4): false, and `state` as it was, if there is none.
@@ -156,7 +159,8 @@ class StaticSolver {
 
  private:
   // Moves `state` to `load`, in smaller steps if it must.
-  SolveSummary Reach(const LoadCase& load, double tolerance, Equilibrium* state);
+  SolveSummary Reach(const LoadCase& load, double tolerance, int max_load_halvings,
+                     Equilibrium* state);
 
   // The answer to k changes of the dead loads (3N×k, N) that come with changes of the commands of
   // the cables driven by displacement (cables×k, m).

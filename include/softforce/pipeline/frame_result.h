@@ -31,6 +31,10 @@ struct MarkerResult {
   bool used = false;         // whether the forces come from it, among others
   double information = NAN;  // share of what the observations tell about the forces; see
                              // estimation::ForceInformation; NaN if it was not observed
+  // Where the marker is by all that was seen in the frame, for one that is hidden too, and the
+  // covariance of that (m²); set in frames with forces.
+  Eigen::Vector3d expected = Eigen::Vector3d::Constant(NAN);  // m
+  Eigen::Matrix3d expected_covariance = Eigen::Matrix3d::Constant(NAN);
 };
 
 struct CableResult {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "softforce/allocation/allocate.h"
+#include "softforce/allocation/allocate_jointly.h"
 #include "softforce/camera/rig.h"
 #include "softforce/camera/triangulate.h"
 #include "softforce/scene/measured.h"
@@ -19,6 +20,13 @@ struct PredictedFeature {
   Eigen::Matrix3d covariance;  // m², of the prediction
   Eigen::Vector3d normal;      // of the surface there, outward
   double diameter = 0;         // m, of the dot; 0 for a corner
+};
+
+// The same as a function of what all features share, the body's forces and the rig's place: a
+// feature is at position + jacobian · delta, give or take an error of its own.
+struct MovingFeature {
+  PredictedFeature at;        // the covariance is that of its own error
+  Eigen::Matrix3Xd jacobian;  // m per unit of delta
 };
 
 // What one camera saw of feature points. For dots the detections are anonymous; for tags they come
@@ -43,6 +51,7 @@ struct FeatureObservation {
 
 struct ObserveOptions {
   allocation::AllocationOptions allocation;
+  double detection_probability = 0.7;  // of a marker that should be seen
   camera::TriangulationOptions triangulation;
   // What a dot's or corner's covariance from the picture leaves out: lens model, compression,
   // print. px.
@@ -58,6 +67,7 @@ struct ObserveOptions {
 // disc's picture to the projection of its centre.
 struct FeatureSightings {
   std::vector<std::vector<camera::PixelObservation>> pixels;
+  std::vector<std::vector<int>> dots;  // for dots: their numbers among the camera's detections
 };
 
 // `threshold_displacement`: the paper's threshold, m; a detection further from its prediction is
@@ -66,6 +76,28 @@ FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T
                               const std::vector<PredictedFeature>& predicted,
                               const std::vector<CameraDetections>& cameras,
                               double threshold_displacement, const ObserveOptions& options);
+
+struct JointSightings {
+  FeatureSightings sightings;
+  allocation::Belief delta;  // given these
+};
+
+// The same in all cameras at once, see allocation::AllocateJointly.
+JointSightings AllocateDotsJointly(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
+                                   const std::vector<MovingFeature>& predicted,
+                                   const allocation::Belief& prior,
+                                   const std::vector<CameraDetections>& cameras,
+                                   double threshold_displacement, const ObserveOptions& options,
+                                   const allocation::Belief* near = nullptr);
+
+// What may have been seen, for a caller who finds out which of these is true: see
+// allocation::ProposeJointly. Follows up to `hypotheses` of them, and has no threshold.
+std::vector<JointSightings> ProposeDots(const camera::Rig& rig,
+                                        const Eigen::Isometry3d& T_rig_robot,
+                                        const std::vector<MovingFeature>& predicted,
+                                        const allocation::Belief& prior,
+                                        const std::vector<CameraDetections>& cameras,
+                                        int hypotheses, const ObserveOptions& options);
 
 // From sightings to measured places: two cameras or more triangulate, one gives two equations.
 std::vector<FeatureObservation> Locate(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,

@@ -31,6 +31,7 @@ struct RunOptions {
   double duration_s = std::numeric_limits<double>::infinity();  // of the frames' times
   int first_frame = 0;
   int end_frame = std::numeric_limits<int>::max();  // one past the last
+  int every = 1;                                    // process every so many frames only
   int registration_frames =
       10;               // that are searched for base fiducials before the first frame is estimated
   int watch_rig = 1;    // look for a bump of the rig in every so many frames; 0: never

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "softforce/pipeline/features.h"
@@ -14,12 +15,18 @@ struct TrackerOptions {
   ObserveOptions observe;
   // How far the marker that moves most may go between two frames by a change of one force (standard
   // deviation), as a share of the smallest marker spacing: sets the forces' random walk, and
-  // through the compliance the gates, which are long where the body is soft.
-  double motion_share = 0.25;
+  // through the compliance the gates, which are long where the body is soft. Two of them are the
+  // 1.5 spacings that a marker may go between two frames.
+  double motion_share = 0.75;
   int max_markers = 0;  // that forces are estimated from, the most informative ones; 0: all
+  // How far off the body's linear answer is over such a motion, as a share of it.
+  double nonlinearity = 0.1;
   double prediction_floor = 0.3e-3;  // m, standard deviation of a prediction at the least
-  double threshold_displacement =
-      1;  // the paper's threshold, as a share of the smallest marker spacing
+  // m, the same for the region of a hidden marker once the frame's forces are known; it is larger
+  // by as much as these forces leave of what was seen unexplained.
+  double region_floor = 0.01e-3;
+  // The paper's threshold, as a share of the smallest marker spacing; more than a marker may go.
+  double threshold_displacement = 2;
 
   void Check() const;  // throws InputError naming the option
 };
@@ -58,11 +65,55 @@ class Tracker {
   // What the last frame's forces were estimated from, rejected ones included.
   const std::vector<MarkerObservation>& observations() const { return observations_; }
 
+  // Which detections the last frame's features were given.
+  const FeatureSightings& sightings() const { return sightings_; }
+
  private:
-  std::vector<PredictedFeature> Predict();
-  std::vector<FeatureObservation> Observe(const std::vector<PredictedFeature>& predicted,
-                                          const std::vector<CameraDetections>& detections,
-                                          double threshold) const;
+  // Which marker is which, and what was known before that was found out.
+  struct Allocated {
+    FeatureSightings sightings;
+    std::vector<FeatureObservation> located;
+    // Of the forces and the rig's place, for moving dots only.
+    allocation::Belief prior, delta;
+    Eigen::VectorXd intensity;  // N, that the prior is about
+
+    bool joint() const { return prior.mean.size() > 0; }
+  };
+  // A way to understand a frame.
+  struct Attempt {
+    Allocated allocated;
+    estimation::ForceEstimate estimate;
+    std::vector<char> chosen;                     // per feature, see Choose
+    std::vector<MarkerObservation> observations;  // that it was estimated from
+
+    int used() const;
+    int rejected() const;
+  };
+
+  // The features at the body's state, by changes of the forces and of the rig's place.
+  std::vector<MovingFeature> Linearise() const;
+  // N² per frame, of each component: how far forces may go.
+  Eigen::VectorXd Walk(const std::vector<MovingFeature>& features) const;
+  Eigen::MatrixXd SharedCovariance(const Eigen::MatrixXd& intensities) const;
+  // m², of each feature's own error.
+  double OwnVariance() const;
+  Allocated Allocate(const std::vector<CameraDetections>& detections, double threshold);
+  // Anew where the body was found to be: false if nothing changes.
+  bool AllocateAgain(const std::vector<CameraDetections>& detections, double threshold,
+                     const Eigen::MatrixXd& covariance, Allocated* allocated) const;
+  // Estimates the forces and allocates again where they bring the body, until that is settled.
+  // `again`: not the first attempt at this frame.
+  Attempt Settle(Allocated allocated, const std::vector<CameraDetections>& detections,
+                 double threshold, const fem::Actuation& actuation, bool again);
+  // Where the markers were not found near where they should be.
+  std::optional<Attempt> SearchWidely(const std::vector<CameraDetections>& detections,
+                                      const fem::Actuation& actuation);
+  std::vector<Allocated> Propose(const std::vector<CameraDetections>& detections,
+                                 const Eigen::MatrixXd& intensities) const;
+  std::vector<MarkerObservation> ObservationsOf(const Allocated& allocated,
+                                                const std::vector<char>& chosen) const;
+  void ExpectMarkers(const std::vector<FeatureObservation>& located,
+                     const std::vector<char>& rejected, std::vector<MarkerResult>* markers) const;
   std::vector<MarkerResult> MarkerResults(const std::vector<FeatureObservation>& observations,
                                           const std::vector<char>& rejected) const;
   // Which of the located features to estimate from, and what their markers tell about the forces.
@@ -79,11 +130,12 @@ class Tracker {
   TrackerOptions options_;
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;
-  std::vector<MarkerObservation> observations_;
   geometry::Matrix6d registration_covariance_;  // as the estimator takes it
-  std::vector<double> information_;             // per marker, of the last frame
-  Eigen::MatrixXd intensity_covariance_;        // N²; grows by the random walk from frame to frame
-  int frames_without_forces_ = 0;               // since the last usable one
+  std::vector<MarkerObservation> observations_;
+  FeatureSightings sightings_;
+  std::vector<double> information_;  // per marker, of the last frame
+  Eigen::MatrixXd intensity_covariance_;  // N²; grows by the random walk from frame to frame
+  int frames_without_forces_ = 0;         // since the last usable one
 };
 
 }  // namespace softforce::pipeline
