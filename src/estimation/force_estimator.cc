@@ -247,6 +247,8 @@ void ForceEstimator::Recall(const Memory& memory) {
   s.walk_covariance = memory.covariance;
 }
 
+void ForceEstimator::LimitFactorisations(int most) { state_->options.max_factorisations = most; }
+
 fem::SolveSummary ForceEstimator::StartFrom(const Eigen::VectorXd& intensity,
                                             const fem::Actuation& actuation) {
   State& s = *state_;

@@ -3,36 +3,10 @@
 #include <cassert>
 #include <utility>
 
+#include "mesh/triangle_shapes.h"
 #include "softforce/mesh/surface.h"
 
 namespace softforce::mesh {
-namespace {
-
-// Values of the shape functions of a triangle's 3 or 6 nodes.
-Eigen::VectorXd Values(int order, const Eigen::Vector3d& L) {
-  if (order == 1) return L;
-  Eigen::VectorXd N(6);
-  N.head<3>() = L.array() * (2 * L.array() - 1);
-  N.tail<3>() << 4 * L(0) * L(1), 4 * L(1) * L(2), 4 * L(2) * L(0);
-  return N;
-}
-
-// Their derivatives (3×2 or 6×2) along L(1) and L(2), while L(0) = 1 − L(1) − L(2).
-Eigen::MatrixX2d Derivatives(int order, const Eigen::Vector3d& L) {
-  Eigen::MatrixX2d dL(3, 2);
-  dL << -1, -1, 1, 0, 0, 1;
-  if (order == 1) return dL;
-  Eigen::MatrixX2d dN(6, 2);
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    dN.row(i) = (4 * L(i) - 1) * dL.row(i);
-    dN.row(3 + i) = 4 * (L(i) * dL.row(j) + L(j) * dL.row(i));
-  }
-  return dN;
-}
-
-}  // namespace
-
 Eigen::Vector3d NodalWeights::Apply(const Eigen::Matrix3Xd& field) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) sum += weights[i] * field.col(nodes[i]);
@@ -41,7 +15,7 @@ Eigen::Vector3d NodalWeights::Apply(const Eigen::Matrix3Xd& field) const {
 
 NodalWeights ShapeFunctions(const Surface& surface, const SurfacePoint& point) {
   assert(point.triangle >= 0 && point.triangle < surface.num_triangles());
-  const Eigen::VectorXd N = Values(surface.order(), point.barycentric);
+  const TriangleValues N = TriangleShapes(surface.order(), point.barycentric);
   std::vector<std::pair<int, double>> entries;
   for (int i = 0; i < N.size(); ++i) {
     entries.emplace_back(surface.triangles(i, point.triangle), N(i));
@@ -56,9 +30,26 @@ NodalWeights ShapeFunctions(const Surface& surface, const SurfacePoint& point) {
   return result;
 }
 
+Eigen::MatrixXd ShapeFunctionSlopes(const Surface& surface, const Eigen::Matrix3Xd& X,
+                                    const SurfacePoint& point, const Eigen::Matrix3Xd& directions) {
+  const auto corner = [&](int i) { return X.col(surface.triangles(i, point.triangle)); };
+  const Eigen::Vector3d edge1 = corner(1) - corner(0), edge2 = corner(2) - corner(0);
+  const Eigen::MatrixXd slopes = TriangleShapeSlopes(surface.order(), point.barycentric) *
+                                 (BarycentricSlopes(edge1, edge2) * directions);
+
+  std::vector<std::pair<int, int>> order;  // as ShapeFunctions
+  for (int i = 0; i < slopes.rows(); ++i) {
+    order.emplace_back(surface.triangles(i, point.triangle), i);
+  }
+  std::sort(order.begin(), order.end());
+  Eigen::MatrixXd sorted(slopes.rows(), slopes.cols());
+  for (int i = 0; i < slopes.rows(); ++i) sorted.row(i) = slopes.row(order[i].second);
+  return sorted;
+}
+
 Eigen::Vector3d Position(const Surface& surface, const Eigen::Matrix3Xd& x,
                          const SurfacePoint& point) {
-  const Eigen::VectorXd N = Values(surface.order(), point.barycentric);
+  const TriangleValues N = TriangleShapes(surface.order(), point.barycentric);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < N.size(); ++i) sum += N(i) * x.col(surface.triangles(i, point.triangle));
   return sum;
@@ -66,7 +57,7 @@ Eigen::Vector3d Position(const Surface& surface, const Eigen::Matrix3Xd& x,
 
 Eigen::Vector3d Normal(const Surface& surface, const Eigen::Matrix3Xd& x,
                        const SurfacePoint& point) {
-  const Eigen::MatrixX2d dN = Derivatives(surface.order(), point.barycentric);
+  const TriangleSlopes dN = TriangleShapeSlopes(surface.order(), point.barycentric);
   Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();
   for (int i = 0; i < dN.rows(); ++i) {
     tangents += x.col(surface.triangles(i, point.triangle)) * dN.row(i);

@@ -92,9 +92,9 @@ void CaptureSource::Estimate(const World&, FrameInWork* frame, Tracker* tracker)
 }
 
 int CaptureSource::expected_frames() const {
-  return static_cast<int>(std::count_if(
-      points_.frames.begin(), points_.frames.end(),
-      [&](const scene::MeasuredFrame& frame) { return IsAskedFor(frame.frame); }));
+  return static_cast<int>(
+      std::count_if(points_.frames.begin(), points_.frames.end(),
+                    [&](const scene::MeasuredFrame& frame) { return IsAskedFor(frame.frame); }));
 }
 
 std::vector<std::filesystem::path> CaptureSource::Inputs() const { return InputsOf(scene_, {}); }

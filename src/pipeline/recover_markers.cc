@@ -49,16 +49,25 @@ std::optional<Tracker::Attempt> Tracker::SearchWidely(
   constexpr double kMaxRejected = 0.2;  // of the observations
   constexpr double kLead = 0.8;         // a rival has less than this share of the observations
   constexpr double kAlike = 0.25;       // spacings, between the markers of two answers
+  // A body that stays away, or a rig that was moved, is not to hold up all frames.
+  constexpr int kLongestWait = 31;  // frames between two searches
   const int least = estimator_.num_components() + 2;
+  // Right answers take 5 to 15 factorisations each.
+  constexpr int kMostOfOne = 20, kMostOfAll = 60;
+  int left = kMostOfAll;
   for (const CameraDetections& camera : detections) {
     if (static_cast<int>(camera.dots.size()) < least) return std::nullopt;
   }
+  if (search_.frames_to_wait-- > 0) return std::nullopt;
+  search_.next_wait = std::min(2 * search_.next_wait + 1, kLongestWait);
+  search_.frames_to_wait = search_.next_wait;
   struct Answer {
     Attempt attempt;
     estimation::ForceEstimator::Memory memory;
     Eigen::Matrix3Xd markers;  // m
   };
   std::vector<Answer> answers;
+  estimator_.LimitFactorisations(kMostOfOne);
   const estimation::ForceEstimator::Memory before = estimator_.Remember();
   for (const bool unloaded : {false, true}) {
     estimator_.Recall(before);
@@ -77,7 +86,9 @@ std::optional<Tracker::Attempt> Tracker::SearchWidely(
       estimator_.Recall(start);
       proposal.intensity = about;
       constexpr double kNoThreshold = 0;
+      if (left <= 0) break;
       Attempt attempt = Settle(std::move(proposal), detections, kNoThreshold, actuation, true);
+      left -= attempt.estimate.factorisations;
       const int used = attempt.used();
       if (!attempt.estimate.ok() || used < least) continue;
       if (attempt.rejected() > kMaxRejected * static_cast<double>(attempt.observations.size())) {
@@ -91,6 +102,7 @@ std::optional<Tracker::Attempt> Tracker::SearchWidely(
       answers.push_back({std::move(attempt), estimator_.Remember(), std::move(markers)});
     }
   }
+  estimator_.LimitFactorisations(options_.estimator.max_factorisations);
   estimator_.Recall(before);
   const auto best = std::max_element(
       answers.begin(), answers.end(),

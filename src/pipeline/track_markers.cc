@@ -39,7 +39,8 @@ std::vector<MovingFeature> Tracker::Linearise() const {
 
 double Tracker::OwnVariance() const {
   const double displacement = LargestDisplacement(world_, estimator_.state().u);
-  return std::pow(options_.prediction_floor, 2) + std::pow(options_.estimator.local_model_error * displacement, 2);
+  return std::pow(options_.prediction_floor, 2) +
+         std::pow(options_.estimator.local_model_error * displacement, 2);
 }
 
 Eigen::VectorXd Tracker::Walk(const std::vector<MovingFeature>& features) const {
@@ -115,9 +116,8 @@ Tracker::Allocated Tracker::Allocate(const std::vector<CameraDetections>& detect
   if (scene_.measured) {
     std::vector<int> markers;
     for (const Feature& feature : features_.features()) markers.push_back(feature.marker);
-    allocated.located =
-        ObservePoints(T_rig_robot_, predicted, markers, detections.front().points, threshold,
-                      options_.observe.allocation);
+    allocated.located = ObservePoints(T_rig_robot_, predicted, markers, detections.front().points,
+                                      threshold, options_.observe.allocation);
     return allocated;
   }
   if (scene_.markers.type != scene::MarkerType::kDot) {

@@ -93,6 +93,7 @@ FrameResult Tracker::Process(int frame, double time_s,
   result.degrees_of_freedom = estimate.degrees_of_freedom;
   frames_without_forces_ = estimate.ok() ? 0 : frames_without_forces_ + 1;
   if (estimate.ok()) {
+    search_ = {};
     intensity_covariance_ = estimate.covariance;
     result.forces = ForceResults(estimate);
   }

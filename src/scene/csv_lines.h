@@ -14,7 +14,8 @@ struct CsvLine {
   bool IsBlank() const;
 };
 
-// All lines but those in which nothing but commas stands. Throws InputError if the file cannot be read.
+// All lines but those in which nothing but commas stands. Throws InputError if the file cannot be
+// read.
 std::vector<CsvLine> ReadCsvLines(const std::filesystem::path& file);
 
 }  // namespace softforce::scene

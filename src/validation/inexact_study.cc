@@ -15,9 +15,9 @@ namespace {
 // worth minutes of following the body there.
 constexpr double kAbsurd = 5;
 
-// To explain a wrong model, least squares may ask for forces that crush the body. The solver gives up
-// there early, and the estimator tries smaller steps: thousands of factorisations are saved, and no
-// answer is lost that the solver's own limits would find.
+// To explain a wrong model, least squares may ask for forces that crush the body. The solver gives
+// up there early, and the estimator tries smaller steps: thousands of factorisations are saved, and
+// no answer is lost that the solver's own limits would find.
 constexpr int kMaxIterations = 15;
 constexpr int kMaxLoadHalvings = 1;
 

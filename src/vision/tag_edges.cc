@@ -175,15 +175,18 @@ bool LookAlike(const Sides& sides) {
   constexpr double kMaxBlurRatio = 1.5;    // of opposite sides; motion blurs these alike
   constexpr double kMaxNoiseRatio = 3;     // of the mean of the other three
   constexpr double kMinNoise = 1;          // grey levels
-  double inside = 0, outside = 0, noise = 0;
+  constexpr double kMinMisfit = 0.01;      // of the contrast: no edge is exactly a blurred step
+  double inside = 0, outside = 0;
   for (const Edge& side : sides) {
     inside += 0.25 * side.inside;
     outside += 0.25 * side.outside;
-    noise += std::max(side.noise, kMinNoise);
   }
+  const double least = std::max(kMinNoise, kMinMisfit * std::abs(outside - inside));
+  double noise = 0;
+  for (const Edge& side : sides) noise += std::max(side.noise, least);
   const double allowed = kMaxLevelChange * std::abs(outside - inside);
   for (int i = 0; i < 4; ++i) {
-    const double others = (noise - std::max(sides[i].noise, kMinNoise)) / 3;
+    const double others = (noise - std::max(sides[i].noise, least)) / 3;
     if (sides[i].noise > kMaxNoiseRatio * others) return false;
     if (std::abs(sides[i].inside - inside) > allowed) return false;
     if (std::abs(sides[i].outside - outside) > allowed) return false;

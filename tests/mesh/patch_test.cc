@@ -105,6 +105,34 @@ TEST_P(PatchOfOrder, AgreesWithAFineSumOverTheDisc) {
   EXPECT_LT(fine.lpNorm<Eigen::Infinity>(), 1e-3);  // the jagged rim of the fine sum
 }
 
+TEST_P(PatchOfOrder, SlopesAreTheDifferencesOfWeights) {
+  const Eigen::Vector3d at(0.0171, 0.0233, 0.002);
+  Eigen::Matrix3Xd directions(3, 2);
+  directions << 1, 0.6, 0, 0.8, 0, 0;
+  const double h = 1e-5;  // m
+  for (const double diameter : {0.0, kDiameter}) {
+    const SurfacePoint centre = ClosestSurfacePoint(surface_, sheet_.nodes, at).at;
+    const MovingPatch moving =
+        MovingPatchWeights(surface_, sheet_.nodes, centre, diameter, directions);
+    for (int k = 0; k < 2; ++k) {
+      Eigen::VectorXd slope = Eigen::VectorXd::Zero(sheet_.num_nodes());
+      const NodalWeights ahead = PatchAt(at + h * directions.col(k), diameter);
+      const NodalWeights behind = PatchAt(at - h * directions.col(k), diameter);
+      for (size_t i = 0; i < ahead.nodes.size(); ++i) {
+        slope(ahead.nodes[i]) += ahead.weights[i] / (2 * h);
+      }
+      for (size_t i = 0; i < behind.nodes.size(); ++i) {
+        slope(behind.nodes[i]) -= behind.weights[i] / (2 * h);
+      }
+      for (size_t i = 0; i < moving.weights.nodes.size(); ++i) {
+        slope(moving.weights.nodes[i]) -= moving.slopes(static_cast<int>(i), k);
+      }
+      // 1/m, of slopes of up to 230: points of the disc that cross an edge within 2h.
+      EXPECT_LT(slope.cwiseAbs().maxCoeff(), diameter > 0 ? 3 : 1e-6);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(BothOrders, PatchOfOrder, ::testing::Values(1, 2));
 
 TEST(PatchWeights, HaveTheSecondMomentOfADisc) {

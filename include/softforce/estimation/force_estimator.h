@@ -163,6 +163,9 @@ class ForceEstimator {
   // Takes the body to the equilibrium under other forces, for the next estimate to start there.
   fem::SolveSummary StartFrom(const Eigen::VectorXd& intensity, const fem::Actuation& actuation);
 
+  // See EstimatorOptions::max_factorisations; from the next estimate on.
+  void LimitFactorisations(int most);
+
   const fem::Equilibrium& state() const;
   const Eigen::VectorXd& intensity() const;  // N, last usable
 

@@ -38,6 +38,11 @@ struct NodalWeights {
 
 NodalWeights ShapeFunctions(const Surface& surface, const SurfacePoint& point);
 
+// How they change along the columns of `directions` (3×k) as the point moves over its flat triangle
+// (nodes at X, straight edges): a row per node of ShapeFunctions, 1/m.
+Eigen::MatrixXd ShapeFunctionSlopes(const Surface& surface, const Eigen::Matrix3Xd& X,
+                                    const SurfacePoint& point, const Eigen::Matrix3Xd& directions);
+
 // Where a surface point is when the nodes stand at `x` (3×N, m).
 Eigen::Vector3d Position(const Surface& surface, const Eigen::Matrix3Xd& x,
                          const SurfacePoint& point);
@@ -63,5 +68,15 @@ SurfaceProjection ClosestSurfacePoint(const Surface& surface, const Eigen::Matri
 // nearest place of the surface. Diameter 0 is the point itself.
 NodalWeights PatchWeights(const Surface& surface, const Eigen::Matrix3Xd& X,
                           const SurfacePoint& centre, double diameter);
+
+// The same, and how the weights change (1/m, a row per node) as the disc moves along the columns of
+// `directions` (3×k).
+struct MovingPatch {
+  NodalWeights weights;
+  Eigen::MatrixXd slopes;
+};
+MovingPatch MovingPatchWeights(const Surface& surface, const Eigen::Matrix3Xd& X,
+                               const SurfacePoint& centre, double diameter,
+                               const Eigen::Matrix3Xd& directions);
 
 }  // namespace softforce::mesh

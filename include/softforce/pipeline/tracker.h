@@ -133,9 +133,13 @@ class Tracker {
   geometry::Matrix6d registration_covariance_;  // as the estimator takes it
   std::vector<MarkerObservation> observations_;
   FeatureSightings sightings_;
-  std::vector<double> information_;  // per marker, of the last frame
+  std::vector<double> information_;       // per marker, of the last frame
   Eigen::MatrixXd intensity_covariance_;  // N²; grows by the random walk from frame to frame
-  int frames_without_forces_ = 0;         // since the last usable one
+  // Of wide searches: after one in vain the next few frames go without, then more and more.
+  struct {
+    int frames_to_wait = 0, next_wait = 0;
+  } search_;
+  int frames_without_forces_ = 0;  // since the last usable one
 };
 
 }  // namespace softforce::pipeline

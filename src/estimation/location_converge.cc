@@ -1,0 +1,283 @@
+// Forces, their places and the body's equilibrium under them, together.
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimation/location_state.h"
+#include "softforce/geometry/chi_square.h"
+
+namespace softforce::estimation {
+namespace {
+
+constexpr int kMaxRounds = 25;
+constexpr int kFreeRounds = 12;  // after these the number of forces stays
+// A step of the loads is followed to this share of the movement that it makes.
+constexpr double kFollowing = 0.02;
+constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
+constexpr double kFarthest = 0.1;           // diagonals: beyond it the linear answer leads astray
+constexpr int kMaxHalvings = 6;
+constexpr double kNearEquilibrium = 1e-5;  // of the diagonal, see ForceEstimator
+// Squared cosine: unknowns of which one is the others' shadow to this share cannot be told apart.
+constexpr double kLeastEigenvalue = 1e-9;
+
+using Status = ForceEstimate::Status;
+
+LocationEstimate Failed(LocationEstimate estimate, Status status, std::string reason) {
+  estimate.status = status;
+  estimate.reason = std::move(reason);
+  estimate.forces.clear();
+  return estimate;
+}
+
+bool SameStructure(const std::vector<TrialForce>& a, const std::vector<TrialForce>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const TrialForce& x, const TrialForce& y) {
+                      return x.identity == y.identity && x.candidate == y.candidate;
+                    });
+}
+
+}  // namespace
+
+struct LocationEstimator::State::Round {
+  std::vector<WhitenedObservation> used;
+  LinearisedPoints points;
+  std::vector<TrialForce> forces;
+  double chi2 = NAN;
+  double sd = INFINITY;  // m, the smallest of an observation's coordinates
+  double slack = 0;      // m, that the linear answer may be wrong by
+};
+
+bool LocationEstimator::State::Explain(const std::vector<Observation>& observations, bool search,
+                                       Round* round, LocationEstimate* estimate) {
+  const Eigen::Matrix3Xd& X = solver->body().mesh.nodes;
+  const std::vector<TrialForce> from = round->forces;
+  int rejections =
+      static_cast<int>(std::count(estimate->rejected.begin(), estimate->rejected.end(), char{1}));
+  while (true) {
+    // The linear answer stretches what should turn: see the square of the way that is left.
+    double way = 0;
+    for (size_t i = 0; i < observations.size(); ++i) {
+      const Observation& seen = observations[i];
+      const double left =
+          (seen.position - seen.offset - seen.at.Apply(X) - seen.at.Apply(state.u)).norm();
+      if (!estimate->rejected[i] && std::isfinite(left)) way = std::max(way, left);
+    }
+    way = std::min(way, diagonal);
+    round->slack = way * way / (2 * diagonal);
+    round->used = WhitenAll(observations, estimate->rejected, round->slack);
+    if (round->used.empty()) {
+      *estimate = Failed(*estimate, Status::kTooFewObservations, "no marker is seen");
+      return false;
+    }
+    round->sd = INFINITY;
+    for (const WhitenedObservation& seen : round->used) round->sd = std::min(round->sd, seen.sd);
+    if (!RefreshResponse(round->used)) {
+      *estimate = Failed(*estimate, Status::kNotConverged, "the body is about to buckle");
+      return false;
+    }
+    round->points = Linearise(round->used, observations);
+    round->forces = from;
+    if (search) {
+      round->forces = Search(round->points, from, &round->chi2);
+    } else {
+      round->chi2 = Refine(round->points, &round->forces);
+    }
+    if (!std::isfinite(round->chi2)) {
+      *estimate = Failed(*estimate, Status::kUnobservable,
+                         "the candidates' forces cannot be told apart by what is seen; give fewer "
+                         "candidates or more markers");
+      return false;
+    }
+    const int worst = WorstOf(round->used, round->points,
+                              Evaluate(round->points, faces, candidates, round->forces));
+    if (worst < 0) return true;
+    if (++rejections >
+        options.estimator.max_rejected_share * static_cast<double>(observations.size())) {
+      *estimate = Failed(
+          *estimate, Status::kInconsistent,
+          fmt::format("after {} rejections there are still observations that no force explains",
+                      rejections - 1));
+      return false;
+    }
+    estimate->rejected[round->used[worst].index] = 1;
+  }
+}
+
+LocationEstimate LocationEstimator::State::Converge(const std::vector<Observation>& observations,
+                                                    const fem::Actuation& told) {
+  LocationEstimate estimate;
+  estimate.rejected.assign(observations.size(), 0);
+  const fem::SolveSummary reached =
+      MoveTo(NodalForces(forces), told, kNearEquilibrium * diagonal, false);
+  if (!reached.ok()) {
+    return Failed(estimate, Status::kNotConverged,
+                  "the body has no equilibrium under the actuation: " + reached.BriefReport());
+  }
+  if (options.method == LocationMethod::kThreshold) {
+    Eigen::Index unknowns = 0;
+    for (const PlacedPatch& placed : candidate_patches) unknowns += placed.directions.cols();
+    if (3 * static_cast<Eigen::Index>(observations.size()) < unknowns) {
+      return Failed(estimate, Status::kTooFewObservations,
+                    fmt::format("{} markers cannot tell {} unknown forces apart (Theorem 4)",
+                                observations.size(), unknowns));
+    }
+  }
+  Round round;
+  round.forces = forces;
+  double followed_to = kNearEquilibrium * diagonal;
+  for (int i = 0; i < kMaxRounds; ++i) {
+    estimate.rounds = i + 1;
+    const std::vector<TrialForce> before = round.forces;
+    if (!Explain(observations, i < kFreeRounds, &round, &estimate)) return estimate;
+    Identify(before, &round.forces);
+    const Eigen::Matrix3Xd change = NodalForces(round.forces) - state.load.forces;
+    const Eigen::VectorXd moves_by = response.transpose() * change.reshaped();
+    const double move = moves_by.size() > 0
+                            ? moves_by.reshaped(3, moves_by.size() / 3).colwise().norm().maxCoeff()
+                            : 0;
+    const double finest =
+        std::max(options.estimator.tolerance * round.sd, kFinestTolerance * diagonal);
+    if (i > 0 && SameStructure(before, round.forces) && move <= finest && followed_to <= finest) {
+      Conclude(&round, &estimate);
+      return estimate;
+    }
+    double share = move > 0 ? std::min(1.0, kFarthest * diagonal / move) : 1;
+    const Eigen::Matrix3Xd start = state.load.forces;
+    bool moved = false;
+    for (int halving = 0; halving <= kMaxHalvings && !moved; ++halving, share /= 2) {
+      followed_to = std::max(finest, kFollowing * share * move);
+      moved = MoveTo(start + share * change, told, followed_to, i > 0).ok();
+    }
+    if (!moved) break;
+  }
+  return Failed(estimate, Status::kNotConverged,
+                "the forces, their places and the body's equilibrium did not settle");
+}
+
+bool LocationEstimator::State::Describe(const LinearisedPoints& points,
+                                        const std::vector<TrialForce>& trials,
+                                        std::vector<LocatedForce>* located,
+                                        std::string* culprit) const {
+  located->clear();
+  if (trials.empty()) return true;
+  const LocationResidual at = Evaluate(points, faces, candidates, trials);
+  const int places = moves() ? 2 : 0;
+  std::vector<int> first;
+  int unknowns = 0;
+  for (const TrialForce& trial : trials) {
+    first.push_back(unknowns);
+    unknowns += static_cast<int>(trial.intensity.size()) + places;
+  }
+  Eigen::MatrixXd J(points.b.size(), unknowns);
+  for (size_t j = 0; j < trials.size(); ++j) {
+    const Eigen::Index k = trials[j].intensity.size() + places;
+    J.middleCols(first[j], k) = at.J[j].leftCols(k);
+  }
+  const Eigen::VectorXd scale = J.colwise().norm().cwiseInverse();
+  const Eigen::MatrixXd scaled = J * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scaled.transpose() * scaled);
+  if (!(axes.eigenvalues()(0) > kLeastEigenvalue)) {
+    Eigen::Index most = 0;
+    axes.eigenvectors().col(0).cwiseAbs().maxCoeff(&most);
+    size_t j = 0;
+    while (j + 1 < trials.size() && first[j + 1] <= most) ++j;
+    *culprit = fmt::format("the force near candidate {}", candidates[trials[j].candidate].name);
+    return false;
+  }
+  const Eigen::MatrixXd covariance = scale.asDiagonal() * axes.eigenvectors() *
+                                     axes.eigenvalues().cwiseInverse().asDiagonal() *
+                                     axes.eigenvectors().transpose() * scale.asDiagonal();
+  for (size_t j = 0; j < trials.size(); ++j) {
+    const TrialForce& trial = trials[j];
+    const PlacedPatch placed = faces.Place(trial.at, candidates[trial.candidate]);
+    const Eigen::Index k = trial.intensity.size();
+    LocatedForce force;
+    force.identity = trial.identity;
+    force.at = trial.at;
+    force.rest = faces.walk().Position(trial.at);
+    force.candidate = NearestCandidate(force.rest);
+    force.force = placed.directions * trial.intensity;
+    force.covariance = placed.directions * covariance.block(first[j], first[j], k, k) *
+                       placed.directions.transpose();
+    force.tangents = placed.tangents;
+    if (moves()) {
+      force.location_covariance = covariance.block<2, 2>(first[j] + k, first[j] + k);
+    }
+    located->push_back(std::move(force));
+  }
+  return true;
+}
+
+int LocationEstimator::State::NearestCandidate(const Eigen::Vector3d& place) const {
+  int nearest = 0;
+  for (size_t c = 1; c < candidates.size(); ++c) {
+    if ((candidate_places[c] - place).norm() < (candidate_places[nearest] - place).norm()) {
+      nearest = static_cast<int>(c);
+    }
+  }
+  return nearest;
+}
+
+void LocationEstimator::State::FindAlternatives(const LinearisedPoints& points,
+                                                const std::vector<TrialForce>& trials,
+                                                std::vector<LocatedForce>* located) const {
+  constexpr double kProbability = 0.95;
+  if (moves()) {
+    // Candidates within the region in which the place lies.
+    for (LocatedForce& force : *located) {
+      for (size_t c = 0; c < candidates.size(); ++c) {
+        if (static_cast<int>(c) == force.candidate) continue;
+        const Eigen::Vector2d apart =
+            force.tangents.transpose() * (candidate_places[c] - force.rest);
+        const double distance2 = apart.dot(force.location_covariance.ldlt().solve(apart));
+        if (distance2 <= geometry::ChiSquareQuantile(kProbability, 2)) {
+          force.alternatives.push_back(static_cast<int>(c));
+        }
+      }
+    }
+    return;
+  }
+  const SubsetSearch search(AtCandidates(points));
+  std::vector<int> groups;
+  for (const TrialForce& trial : trials) groups.push_back(trial.candidate);
+  std::sort(groups.begin(), groups.end());
+  const double chi2 = search.Fit(groups).chi2;
+  // As if one continuous unknown led from the one to the other: the logarithm of the likelihoods'
+  // ratio beyond which it is a certain choice.
+  const double least = geometry::ChiSquareQuantile(1 - options.false_alarm, 1);
+  for (LocatedForce& force : *located) {
+    for (int c = 0; c < static_cast<int>(candidates.size()); ++c) {
+      if (std::find(groups.begin(), groups.end(), c) != groups.end()) continue;
+      std::vector<int> exchanged = groups;
+      std::replace(exchanged.begin(), exchanged.end(), force.candidate, c);
+      std::sort(exchanged.begin(), exchanged.end());
+      if (search.Fit(exchanged).chi2 - chi2 < least) force.alternatives.push_back(c);
+    }
+  }
+}
+
+void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate) {
+  Round& round = *last;
+  Identify(forces, &round.forces);
+  std::string culprit;
+  if (!Describe(round.points, round.forces, &estimate->forces, &culprit)) {
+    *estimate = Failed(*estimate, Status::kUnobservable,
+                       culprit + " cannot be told apart from the others by what is seen");
+    return;
+  }
+  if (options.method != LocationMethod::kThreshold) {
+    FindAlternatives(round.points, round.forces, &estimate->forces);
+  }
+  estimate->status = Status::kOk;
+  estimate->chi2 = round.chi2;
+  estimate->degrees_of_freedom = static_cast<int>(round.points.b.size());
+  for (const TrialForce& trial : round.forces) {
+    estimate->degrees_of_freedom -= static_cast<int>(trial.intensity.size()) + (moves() ? 2 : 0);
+  }
+  forces = round.forces;
+}
+
+}  // namespace softforce::estimation

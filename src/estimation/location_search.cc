@@ -1,0 +1,249 @@
+// How many forces there are, and near which candidates.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "estimation/location_state.h"
+#include "softforce/geometry/chi_square.h"
+
+namespace softforce::estimation {
+namespace {
+
+constexpr int kMaxChanges = 12;       // of the number of forces in one search
+constexpr size_t kTriedStarts = 3;    // candidates from which a new force is tried
+constexpr double kImprobable = 1e-3;  // a residual that large comes by chance this often
+constexpr double kNeighbours = 1.5;   // candidate spacings
+
+}  // namespace
+
+double LocationEstimator::State::Price(const TrialForce& force) const {
+  const int unknowns = static_cast<int>(force.intensity.size()) + (moves() ? 2 : 0);
+  return geometry::ChiSquareQuantile(
+      1 - options.false_alarm / static_cast<double>(candidates.size()), unknowns);
+}
+
+double LocationEstimator::State::Total(double chi2, const std::vector<TrialForce>& trials) const {
+  for (const TrialForce& trial : trials) chi2 += Price(trial);
+  return chi2;
+}
+
+GroupedProblem LocationEstimator::State::AtCandidates(const LinearisedPoints& points) const {
+  GroupedProblem problem;
+  problem.b = points.b;
+  for (size_t c = 0; c < candidates.size(); ++c) {
+    const PlacedPatch& placed = candidate_patches[c];
+    problem.A.push_back(points.Of(placed.patch.weights) * placed.directions);
+    problem.push.push_back(candidates[c].direction == ForceDirection::kPush);
+  }
+  return problem;
+}
+
+std::vector<TrialForce> LocationEstimator::State::ForcesOf(const Subset& subset) const {
+  std::vector<TrialForce> trials;
+  Eigen::Index i = 0;
+  for (const int c : subset.groups) {
+    TrialForce trial;
+    trial.candidate = c;
+    trial.at = candidates[c].at;
+    trial.intensity = subset.x.segment(i, candidate_patches[c].directions.cols());
+    i += trial.intensity.size();
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+std::vector<TrialForce> LocationEstimator::State::Likeliest(const LinearisedPoints& points,
+                                                            double* chi2) const {
+  std::vector<double> price;
+  for (const PlacedPatch& placed : candidate_patches) {
+    TrialForce trial;
+    trial.intensity = Eigen::VectorXd::Zero(placed.directions.cols());
+    price.push_back(Price(trial));
+  }
+  const Subset best = SubsetSearch(AtCandidates(points)).Best(options.max_forces, price);
+  *chi2 = best.chi2;
+  return ForcesOf(best);
+}
+
+double LocationEstimator::State::Refine(const LinearisedPoints& points,
+                                        std::vector<TrialForce>* trials) const {
+  return moves() ? FitLocations(points, faces, candidates, trials)
+                 : FitIntensities(points, faces, candidates, trials);
+}
+
+bool LocationEstimator::State::Prune(const LinearisedPoints& points,
+                                     std::vector<TrialForce>* trials, double* chi2) const {
+  // Of two that explain the same, the one that stays where it is keeps its identity.
+  constexpr double kPriceOfMoving = 10;  // of χ², per diagonal
+  const double before = Total(*chi2, *trials);
+  double least = INFINITY;
+  std::vector<TrialForce> best;
+  for (size_t j = 0; j < trials->size(); ++j) {
+    std::vector<TrialForce> without = *trials;
+    without.erase(without.begin() + static_cast<std::ptrdiff_t>(j));
+    std::vector<TrialForce> refined = without;
+    const double chi2_without = Refine(points, &refined);
+    const double total = Total(chi2_without, refined);
+    if (!(total < before)) continue;
+    double moved = 0;
+    for (size_t i = 0; i < refined.size(); ++i) {
+      moved += (faces.walk().Position(refined[i].at) - faces.walk().Position(without[i].at)).norm();
+    }
+    const double score = total + kPriceOfMoving * moved / diagonal;
+    if (score >= least) continue;
+    least = score;
+    best = refined;
+    *chi2 = chi2_without;
+  }
+  if (least == INFINITY) return false;
+  *trials = best;
+  return true;
+}
+
+bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<TrialForce>* trials,
+                                    double* chi2) const {
+  if (static_cast<int>(trials->size()) >= options.max_forces) return false;
+  // What a force at each candidate would explain, those at hand giving way.
+  const LocationResidual at = Evaluate(points, faces, candidates, *trials);
+  GroupedProblem problem = AtCandidates(points);
+  problem.b = -at.residual;
+  const int n = static_cast<int>(candidates.size());
+  std::vector<int> present;
+  for (const Eigen::MatrixXd& J : at.J) {
+    present.push_back(static_cast<int>(problem.A.size()));
+    problem.A.push_back(J);
+    problem.push.push_back(false);
+  }
+  const SubsetSearch search(problem);
+  std::vector<std::pair<double, int>> starts;  // χ², candidate
+  for (int c = 0; c < n; ++c) {
+    std::vector<int> groups{c};
+    groups.insert(groups.end(), present.begin(), present.end());
+    const double there = search.Fit(groups).chi2;
+    if (std::isfinite(there)) starts.emplace_back(there, c);
+  }
+  std::sort(starts.begin(), starts.end());
+  if (starts.size() > kTriedStarts) starts.resize(kTriedStarts);
+  double least = Total(*chi2, *trials);
+  std::vector<TrialForce> best;
+  for (const auto& [there, c] : starts) {
+    TrialForce added;
+    added.candidate = c;
+    added.at = candidates[c].at;
+    added.intensity = Eigen::VectorXd::Zero(candidate_patches[c].directions.cols());
+    std::vector<TrialForce> grown = *trials;
+    grown.push_back(added);
+    // Moving may help, but hardly more than to halve what a fixed place leaves over the price.
+    if (!(there + 0.5 * Price(added) < *chi2)) continue;
+    if (!std::isfinite(FitIntensities(points, faces, candidates, &grown))) continue;
+    const double chi2_grown = Refine(points, &grown);
+    const double total = Total(chi2_grown, grown);
+    if (!(total < least)) continue;
+    least = total;
+    best = grown;
+    *chi2 = chi2_grown;
+  }
+  if (best.empty()) return false;
+  *trials = best;
+  return true;
+}
+
+std::vector<TrialForce> LocationEstimator::State::Survivors(const LinearisedPoints& points,
+                                                            double* chi2) const {
+  const Subset survivors = SubsetSearch(AtCandidates(points)).Threshold(options.threshold);
+  *chi2 = survivors.chi2;
+  if (!std::isfinite(survivors.chi2)) return {};
+  std::vector<TrialForce> trials = ForcesOf(survivors);
+  // Neighbours hang together over others; each cluster acts at its centre.
+  double spacing = INFINITY;
+  for (size_t a = 0; a < candidates.size(); ++a) {
+    for (size_t b = a + 1; b < candidates.size(); ++b) {
+      spacing = std::min(spacing, (candidate_places[a] - candidate_places[b]).norm());
+    }
+  }
+  std::vector<TrialForce> merged;
+  std::vector<char> taken(trials.size(), 0);
+  for (size_t first = 0; first < trials.size(); ++first) {
+    if (taken[first]) continue;
+    std::vector<size_t> cluster{first};
+    taken[first] = 1;
+    for (size_t i = 0; i < cluster.size(); ++i) {
+      for (size_t j = 0; j < trials.size(); ++j) {
+        const double apart =
+            (candidate_places[trials[cluster[i]].candidate] - candidate_places[trials[j].candidate])
+                .norm();
+        if (taken[j] || apart > kNeighbours * spacing) continue;
+        taken[j] = 1;
+        cluster.push_back(j);
+      }
+    }
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const size_t i : cluster) {
+      centre += candidate_places[trials[i].candidate] / static_cast<double>(cluster.size());
+    }
+    TrialForce force = trials[first];
+    if (cluster.size() > 1) {
+      force.at = mesh::ClosestSurfacePoint(faces.surface(), solver->body().mesh.nodes, centre).at;
+    }
+    merged.push_back(force);
+  }
+  if (merged.size() < trials.size()) *chi2 = FitIntensities(points, faces, candidates, &merged);
+  return merged;
+}
+
+std::vector<TrialForce> LocationEstimator::State::Search(const LinearisedPoints& points,
+                                                         const std::vector<TrialForce>& from,
+                                                         double* chi2) const {
+  if (options.method == LocationMethod::kThreshold) return Survivors(points, chi2);
+  if (options.method == LocationMethod::kCandidates) return Likeliest(points, chi2);
+  const auto settle = [&](std::vector<TrialForce>* trials, double* there) {
+    *there = Refine(points, trials);
+    for (int change = 0; change < kMaxChanges; ++change) {
+      if (!Prune(points, trials, there) && !Grow(points, trials, there)) break;
+    }
+  };
+  std::vector<TrialForce> best = from;
+  settle(&best, chi2);
+  int unknowns = 0;
+  for (const TrialForce& trial : best) unknowns += static_cast<int>(trial.intensity.size()) + 2;
+  const int freedom = std::max(1, static_cast<int>(points.b.size()) - unknowns);
+  const bool plausible = *chi2 <= geometry::ChiSquareQuantile(1 - kImprobable, freedom);
+  if (!from.empty() && plausible) return best;
+  double chi2_anew = INFINITY;
+  std::vector<TrialForce> anew = Likeliest(points, &chi2_anew);
+  settle(&anew, &chi2_anew);
+  if (!(Total(chi2_anew, anew) < Total(*chi2, best))) return best;
+  *chi2 = chi2_anew;
+  return anew;
+}
+
+void LocationEstimator::State::Identify(const std::vector<TrialForce>& before,
+                                        std::vector<TrialForce>* trials) {
+  constexpr double kFarthest = 0.2;  // diagonals: one that jumps further is another force
+  struct Pair {
+    double apart;  // m
+    size_t old, trial;
+    bool operator<(const Pair& other) const { return apart < other.apart; }
+  };
+  std::vector<Pair> pairs;
+  for (size_t i = 0; i < before.size(); ++i) {
+    for (size_t j = 0; j < trials->size(); ++j) {
+      const double apart =
+          (faces.walk().Position(before[i].at) - faces.walk().Position((*trials)[j].at)).norm();
+      if (apart <= kFarthest * diagonal) pairs.push_back({apart, i, j});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  for (TrialForce& trial : *trials) trial.identity = -1;
+  std::set<int> taken;
+  for (const Pair& pair : pairs) {
+    TrialForce& trial = (*trials)[pair.trial];
+    if (trial.identity >= 0 || !taken.insert(before[pair.old].identity).second) continue;
+    trial.identity = before[pair.old].identity;
+  }
+  for (TrialForce& trial : *trials) {
+    if (trial.identity < 0) trial.identity = next_identity++;
+  }
+}
+
+}  // namespace softforce::estimation

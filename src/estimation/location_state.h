@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimation/location_fit.h"
+#include "estimation/model_error.h"
+#include "estimation/subset_search.h"
+#include "softforce/estimation/location_estimator.h"
+
+namespace softforce::estimation {
+
+// What a LocationEstimator holds.
+struct LocationEstimator::State {
+  State(fem::StaticSolver* solver_in, const mesh::Surface& surface,
+        std::vector<LocationCandidate> candidates_in, const LocationOptions& options_in);
+
+  // --- The body.
+  fem::SolveSummary MoveTo(const Eigen::Matrix3Xd& forces, const fem::Actuation& told,
+                           double tolerance, bool continued);
+  Eigen::Matrix3Xd NodalForces(const std::vector<TrialForce>& forces) const;
+
+  // --- The observations, linearised where the body stands.
+  // Computes the response of the body to forces on the observed points, unless what it has is for
+  // the same points and about the same shape. False if the body is about to buckle.
+  bool RefreshResponse(const std::vector<WhitenedObservation>& used);
+  LinearisedPoints Linearise(const std::vector<WhitenedObservation>& used,
+                             const std::vector<Observation>& observations) const;
+  // `slack` (m): what the linear answer may be wrong by, in each coordinate.
+  std::vector<WhitenedObservation> WhitenAll(const std::vector<Observation>& observations,
+                                             const std::vector<char>& rejected, double slack) const;
+  double LargestDisplacement(const std::vector<Observation>& observations) const;  // m
+  // The observation that fits worst and cannot be right; −1 if there is none.
+  int WorstOf(const std::vector<WhitenedObservation>& used, const LinearisedPoints& points,
+              const LocationResidual& at) const;
+
+  // --- How many forces, and where.
+  double Price(const TrialForce& force) const;  // by which χ² has to fall for it
+  double Total(double chi2, const std::vector<TrialForce>& forces) const;
+  GroupedProblem AtCandidates(const LinearisedPoints& points) const;
+  std::vector<TrialForce> ForcesOf(const Subset& subset) const;
+  std::vector<TrialForce> Likeliest(const LinearisedPoints& points, double* chi2) const;
+  // The likeliest forces, from those at hand; sets χ².
+  std::vector<TrialForce> Search(const LinearisedPoints& points,
+                                 const std::vector<TrialForce>& from, double* chi2) const;
+  double Refine(const LinearisedPoints& points, std::vector<TrialForce>* forces) const;
+  bool Prune(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2) const;
+  bool Grow(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2) const;
+  std::vector<TrialForce> Survivors(const LinearisedPoints& points, double* chi2) const;
+  // Gives them the identities of those of `before` that are nearest, new ones to the others.
+  void Identify(const std::vector<TrialForce>& before, std::vector<TrialForce>* forces);
+
+  // The likeliest forces for given observations, after those are rejected that they cannot explain.
+  struct Round;
+  bool Explain(const std::vector<Observation>& observations, bool search, Round* round,
+               LocationEstimate* estimate);
+  LocationEstimate Converge(const std::vector<Observation>& observations,
+                            const fem::Actuation& told);
+  void Conclude(Round* round, LocationEstimate* estimate);
+  // Places, forces and their covariances; false if they are not determined, with the culprit.
+  bool Describe(const LinearisedPoints& points, const std::vector<TrialForce>& forces,
+                std::vector<LocatedForce>* located, std::string* culprit) const;
+  void FindAlternatives(const LinearisedPoints& points, const std::vector<TrialForce>& forces,
+                        std::vector<LocatedForce>* located) const;
+  int NearestCandidate(const Eigen::Vector3d& place) const;
+
+  bool moves() const { return options.method == LocationMethod::kContinuous; }
+
+  fem::StaticSolver* solver;
+  std::vector<LocationCandidate> candidates;
+  LocationOptions options;
+  ForceFaces faces;
+  std::vector<Eigen::Vector3d> candidate_places;  // m, body at rest
+  std::vector<PlacedPatch> candidate_patches;
+  geometry::Matrix6d registration_covariance = geometry::Matrix6d::Zero();
+  double diagonal = NAN;  // m, of the body at rest
+
+  fem::Equilibrium state;
+  std::vector<TrialForce> forces;  // of the last usable estimate
+  int next_identity = 0;
+
+  Eigen::MatrixXd response;  // 3N×3m, see LinearisedPoints
+  std::vector<mesh::NodalWeights> response_points;
+  Eigen::Matrix3Xd response_u;
+};
+
+}  // namespace softforce::estimation
