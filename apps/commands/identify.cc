@@ -5,6 +5,7 @@
 
 #include "commands/camera_sources.h"
 #include "commands/commands.h"
+#include "commands/model_options.h"
 #include "commands/stop.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
@@ -22,6 +23,7 @@ struct IdentifyArguments {
   std::vector<std::string> unknowns{"youngs_modulus"};
   std::string out;
   bool in_place = false;
+  std::string correct_mesh = "none";
   pipeline::IdentifyOptions options;
 };
 
@@ -63,6 +65,7 @@ int Identify(IdentifyArguments* arguments) {
   for (const std::string& name : arguments->unknowns) {
     options.unknowns.push_back(ParseUnknown(name));
   }
+  options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   options.sources = ParseCameraSources(arguments->cameras);
   const std::filesystem::path target = Target(*arguments);
   if (!arguments->in_place) options.out = target;
@@ -102,14 +105,7 @@ Command AddIdentify(CLI::App* program) {
   app->add_option("--registration-frames", arguments->options.registration_frames,
                   "Frames searched for base fiducials to find where the cameras stand")
       ->capture_default_str();
-  app->add_option("--common-model-error", arguments->options.tracker.estimator.common_model_error,
-                  "As for run: model error that shifts or turns all markers together, as a share "
-                  "of the largest marker displacement (standard deviation)")
-      ->capture_default_str();
-  app->add_option("--local-model-error", arguments->options.tracker.estimator.local_model_error,
-                  "As for run: model error of each marker by itself, as a share of the largest "
-                  "marker displacement (standard deviation)")
-      ->capture_default_str();
+  AddModelOptions(app, &arguments->correct_mesh, &arguments->options.tracker.estimator);
   return {app, [arguments] { return Identify(arguments.get()); }};
 }
 

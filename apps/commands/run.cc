@@ -6,6 +6,7 @@
 #include "commands/camera_sources.h"
 #include "commands/commands.h"
 #include "commands/live_options.h"
+#include "commands/model_options.h"
 #include "commands/stop.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/quantity.h"
@@ -48,15 +49,6 @@ void ParseFrames(const std::string& text, pipeline::RunOptions* options) {
   if (colon == std::string::npos) number("?", 0);
   options->first_frame = number(text.substr(0, colon), options->first_frame);
   options->end_frame = number(text.substr(colon + 1), options->end_frame);
-}
-
-pipeline::MeshAim ParseMeshAim(const std::string& name) {
-  if (name == "none") return pipeline::MeshAim::kGiven;
-  if (name == "refined") return pipeline::MeshAim::kRefined;
-  if (name == "converged") return pipeline::MeshAim::kConverged;
-  throw base::InputError("--correct-mesh",
-                         fmt::format("got \"{}\", expected none, refined or converged", name),
-                         "Write for example: --correct-mesh refined");
 }
 
 estimation::EstimationMethod ParseMethod(const std::string& name) {
@@ -136,16 +128,7 @@ Command AddRun(CLI::App* program) {
   app->add_option("--watch-rig", arguments->options.watch_rig,
                   "Look whether the rig was bumped in every so many frames; 0: never")
       ->capture_default_str();
-  app->add_option(
-         "--common-model-error", arguments->options.tracker.estimator.common_model_error,
-         "Model error that shifts or turns all markers together, as a share of the largest "
-         "marker displacement (standard deviation)")
-      ->capture_default_str();
-  app->add_option(
-         "--local-model-error", arguments->options.tracker.estimator.local_model_error,
-         "Model error of each marker by itself, as a share of the largest marker displacement "
-         "(standard deviation)")
-      ->capture_default_str();
+  AddModelOptions(app, &arguments->correct_mesh, &arguments->options.tracker.estimator);
   arguments->method = estimation::Name(arguments->options.tracker.estimator.method);
   app->add_option("--method", arguments->method,
                   "converged: forces and equilibrium converge in every frame; linear: the paper's "
@@ -165,11 +148,6 @@ Command AddRun(CLI::App* program) {
                   "Estimate from so many markers in each frame, those that tell most about the "
                   "forces; 0: from all")
       ->capture_default_str();
-  app->add_option(
-         "--correct-mesh", arguments->correct_mesh,
-         "Correct the mesh's own error as far as the once refined mesh shows it (refined), "
-         "or to the estimated limit (converged); model errors shrink with it")
-      ->option_text("none|refined|converged [none]");
   app->add_option("--threads", arguments->options.threads,
                   "Threads that share the work; 0: as many as there are cores. The tables do not "
                   "depend on it")

@@ -8,6 +8,7 @@
 
 #include "pipeline/known_states.h"
 #include "pipeline/marker_source.h"
+#include "pipeline/mesh_correction.h"
 #include "pipeline/open_recording.h"
 #include "pipeline/refusals.h"
 #include "softforce/base/input_error.h"
@@ -111,7 +112,9 @@ class Job {
         weights_(ParseWeights(options.weights, scene_)),
         source_options_(SourceOptions()),
         source_(OpenSource()),
-        world_(BuildWorld(scene_)),
+        correction_(CorrectMesh(scene_, options.mesh_aim, options.show_progress)),
+        tracker_options_(Corrected(options.tracker, correction_)),
+        world_(BuildWorld(scene_, correction_)),
         unknowns_(UnknownsOf(scene_, world_.mesh(), options)),
         standing_(source_->Start([](const std::string&) {})),
         known_(scene_, world_, weights_) {}
@@ -127,13 +130,16 @@ class Job {
   void Warn(const std::string& warning) { report_.warnings.push_back(warning); }
   void EstimateForcesAgain(const std::vector<estimation::KnownState>& states);
   scene::SceneChanges Changes() const;
-  void AddOffsetsOfScene();
+  double ModulusFactor() const { return correction_ ? correction_->modulus_factor : 1; }
+  void ShowAsInScene();
 
   const IdentifyOptions& options_;
   const scene::Scene scene_;
   const std::vector<KnownWeights> weights_;
   const RunOptions source_options_;
   const std::unique_ptr<MarkerSource> source_;
+  const std::optional<MeshCorrection> correction_;
+  const TrackerOptions tracker_options_;
   const World world_;
   const std::vector<Unknown> unknowns_;
   const Standing standing_;
@@ -180,7 +186,7 @@ bool Job::Stopped() {
 
 bool Job::PlayRecording() {
   Tracker tracker(scene_, world_, source_->rig(), standing_.T_rig_robot, standing_.covariance,
-                  options_.tracker);
+                  tracker_options_);
   base::Progress progress("frames", known_.end_frame());
   int& lost = report_.frames_left_out;
   int odd = 0, used = 0;
@@ -232,7 +238,7 @@ void Job::EstimateForcesAgain(const std::vector<estimation::KnownState>& states)
     for (size_t c = 0; c < actuation.cables.size(); ++c) {
       actuation.cables[c].value += report_.found.cable_offsets(static_cast<Eigen::Index>(c));
     }
-    estimation::ForceEstimator estimator(&solver, world_.sites, options_.tracker.estimator);
+    estimation::ForceEstimator estimator(&solver, world_.sites, tracker_options_.estimator);
     estimator.SetRegistrationCovariance(InRobotFrame(standing_.covariance, standing_.T_rig_robot));
     const bool advanced = estimator.Advance(actuation).ok();
     const estimation::ForceEstimate estimate =
@@ -257,7 +263,7 @@ scene::SceneChanges Job::Changes() const {
       if (kind == Kind::kCableOffset || regions.empty()) continue;
       const fem::Material& found = report_.found.materials[regions.front()];
       if (kind == Kind::kYoungsModulus) {
-        changes.youngs_modulus[name] = found.youngs_modulus;
+        changes.youngs_modulus[name] = found.youngs_modulus / ModulusFactor();
       } else {
         changes.poissons_ratio[name] = found.poissons_ratio;
       }
@@ -272,20 +278,26 @@ scene::SceneChanges Job::Changes() const {
   return changes;
 }
 
-// Offsets of cables as the scene has them: from what the cable is told, not from the old offset.
-void Job::AddOffsetsOfScene() {
+// Values as the scene has them: moduli without the mesh's correction; offsets of cables from what
+// the cable is told, not from the old offset.
+void Job::ShowAsInScene() {
   for (size_t i = 0; i < unknowns_.size(); ++i) {
+    estimation::IdentifiedValue& shown = report_.found.values[i];
+    if (unknowns_[i].kind == Kind::kYoungsModulus) {
+      for (double* value : {&shown.start, &shown.value, &shown.sd}) *value /= ModulusFactor();
+    }
     if (unknowns_[i].kind != Kind::kCableOffset) continue;
     int cable = 0;
     for (const scene::Actuator& actuator : scene_.actuators) {
       if (actuator.type != scene::ActuatorType::kCable || cable++ != unknowns_[i].cable) continue;
-      report_.found.values[i].start += actuator.offset;
-      report_.found.values[i].value += actuator.offset;
+      shown.start += actuator.offset;
+      shown.value += actuator.offset;
     }
   }
 }
 
 IdentifyReport Job::Finish() {
+  report_.mesh_aim = options_.mesh_aim;
   if (!PlayRecording()) return report_;
   const std::vector<std::string> moving = known_.Moving(scene_);
   for (const std::string& states : moving) Warn(states);
@@ -298,7 +310,7 @@ IdentifyReport Job::Finish() {
              world_.mesh().num_nodes(), unknowns_.size(), states.size());
   }
   estimation::IdentificationOptions options;
-  options.estimator = options_.tracker.estimator;
+  options.estimator = tracker_options_.estimator;
   options.stop = options_.stop;
   report_.found =
       estimation::Identify(world_.solver->body(), states, unknowns_,
@@ -306,7 +318,7 @@ IdentifyReport Job::Finish() {
   if (!report_.found.ok()) return report_;
   report_.changes = Changes();
   EstimateForcesAgain(states);
-  AddOffsetsOfScene();
+  ShowAsInScene();
   report_.usable = !Stopped();
   return report_;
 }

@@ -128,7 +128,11 @@ std::string IdentifyReport::FullReport() const {
     }
     return found.states.empty() ? text : text + States(found.states);
   }
-  return text + Values(found) + States(found.states) + Forces(forces) + Judgement(*this);
+  text += Values(found) + States(found.states) + Forces(forces) + Judgement(*this);
+  if (mesh_aim != MeshAim::kGiven) {
+    text += fmt::format("The values are for runs with --correct-mesh {}.\n", Name(mesh_aim));
+  }
+  return text;
 }
 
 }  // namespace softforce::pipeline

@@ -13,7 +13,21 @@ constexpr double kLeastModelError = 0.1;  // of what is allowed without correcti
 
 }  // namespace
 
-MeshCorrection CorrectMesh(const scene::Scene& scene, MeshAim aim, bool show_progress) {
+const char* Name(MeshAim aim) {
+  switch (aim) {
+    case MeshAim::kGiven:
+      return "none";
+    case MeshAim::kRefined:
+      return "refined";
+    case MeshAim::kConverged:
+      return "converged";
+  }
+  return "";
+}
+
+std::optional<MeshCorrection> CorrectMesh(const scene::Scene& scene, MeshAim aim,
+                                          bool show_progress) {
+  if (aim == MeshAim::kGiven) return std::nullopt;
   if (aim == MeshAim::kConverged && scene.mesh.order == 1) {
     throw base::InputError(
         scene.file.string() + ": body: mesh: order",
@@ -46,6 +60,17 @@ MeshCorrection CorrectMesh(const scene::Scene& scene, MeshAim aim, bool show_pro
   correction.model_error_factor =
       std::isfinite(share) ? std::clamp(share, kLeastModelError, 1.0) : 1;
   return correction;
+}
+
+World BuildWorld(const scene::Scene& scene, const std::optional<MeshCorrection>& correction) {
+  return correction ? BuildWorld(correction->scene, correction->mesh) : BuildWorld(scene);
+}
+
+TrackerOptions Corrected(TrackerOptions options, const std::optional<MeshCorrection>& correction) {
+  if (!correction) return options;
+  options.estimator.common_model_error *= correction->model_error_factor;
+  options.estimator.local_model_error *= correction->model_error_factor;
+  return options;
 }
 
 }  // namespace softforce::pipeline

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "softforce/pipeline/mesh_convergence.h"
-#include "softforce/pipeline/run.h"
+#include "softforce/pipeline/tracker.h"
 
 namespace softforce::pipeline {
 
@@ -18,7 +20,15 @@ struct MeshCorrection {
   double model_error_factor = 1;
 };
 
-// Throws InputError if the refined mesh would be too large, see AssessMesh.
-MeshCorrection CorrectMesh(const scene::Scene& scene, MeshAim aim, bool show_progress);
+// None for the given mesh. Throws InputError if the refined mesh would be too large, see
+// AssessMesh.
+std::optional<MeshCorrection> CorrectMesh(const scene::Scene& scene, MeshAim aim,
+                                          bool show_progress);
+
+// The body to compute with: the scene's, or the corrected one.
+World BuildWorld(const scene::Scene& scene, const std::optional<MeshCorrection>& correction);
+
+// `options` for the given mesh, with model errors as they are for that body.
+TrackerOptions Corrected(TrackerOptions options, const std::optional<MeshCorrection>& correction);
 
 }  // namespace softforce::pipeline

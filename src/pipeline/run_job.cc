@@ -19,18 +19,6 @@ namespace {
 constexpr int kFramesPerThread = 4;
 constexpr int kLiveFramesWaiting = 2;
 
-std::optional<MeshCorrection> CorrectionFor(const scene::Scene& scene, const RunOptions& options) {
-  if (options.mesh_aim == MeshAim::kGiven) return std::nullopt;
-  return CorrectMesh(scene, options.mesh_aim, options.show_progress);
-}
-
-TrackerOptions Corrected(TrackerOptions options, const std::optional<MeshCorrection>& correction) {
-  if (!correction) return options;
-  options.estimator.common_model_error *= correction->model_error_factor;
-  options.estimator.local_model_error *= correction->model_error_factor;
-  return options;
-}
-
 }  // namespace
 
 // Cameras are opened when all else is ready, for they do not wait.
@@ -38,8 +26,8 @@ RunJob::RunJob(const std::filesystem::path& scene_file, const RunOptions& option
     : options_(options),
       scene_(scene::LoadScene(scene_file)),
       source_(OpenMarkerSource(scene_, options)),
-      correction_(CorrectionFor(scene_, options)),
-      world_(correction_ ? BuildWorld(correction_->scene, correction_->mesh) : BuildWorld(scene_)),
+      correction_(CorrectMesh(scene_, options.mesh_aim, options.show_progress)),
+      world_(BuildWorld(scene_, correction_)),
       index_w_(IndexW(world_)),
       standing_(
           source_->Start(options.show_progress ? base::TellBesideProgress : SourceWatch::Tell())),

@@ -102,8 +102,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   if (std::isfinite(facts.index_w)) json["model"]["I_w_N_per_mm"] = 1e-3 * facts.index_w;
   if (facts.correction) {
     const MeshCorrection& correction = *facts.correction;
-    const bool refined = facts.options.mesh_aim == MeshAim::kRefined;
-    json["mesh_correction"] = {{"to", refined ? "refined" : "converged"},
+    json["mesh_correction"] = {{"to", Name(facts.options.mesh_aim)},
                                {"cells_given", correction.given_cells},
                                {"bias_to_refined_percent", 100 * correction.bias.refined},
                                {"bias_to_converged_percent", 100 * correction.bias.converged},

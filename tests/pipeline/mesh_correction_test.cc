@@ -21,16 +21,21 @@ TEST(CorrectMesh, MovesTheMarkersLikeTheOnceRefinedMesh) {
   const Eigen::MatrixXd refined =
       AnswerOf(BuildWorld(scene, mesh::Refine(given.mesh()).mesh)).markers;
 
-  const MeshCorrection correction = CorrectMesh(scene, MeshAim::kRefined, false);
-  const Eigen::MatrixXd corrected = AnswerOf(BuildWorld(correction.scene, correction.mesh)).markers;
+  const auto correction = CorrectMesh(scene, MeshAim::kRefined, false);
+  ASSERT_TRUE(correction.has_value());
+  const Eigen::MatrixXd corrected = AnswerOf(BuildWorld(scene, correction)).markers;
 
   ASSERT_GT(BiasOf(AnswerOf(given).markers, refined), 0.03);
   EXPECT_NEAR(BiasOf(corrected, refined), 0, 1e-6);  // solver's rounding
-  EXPECT_LT(correction.modulus_factor, 1);
-  EXPECT_GT(correction.modulus_factor, 0.98);  // most of it is the mesh's doing
-  EXPECT_LT(correction.mesh.num_elements(), 4 * correction.given_cells);
-  EXPECT_GE(correction.model_error_factor, 0.1);
-  EXPECT_LE(correction.model_error_factor, 1);
+  EXPECT_LT(correction->modulus_factor, 1);
+  EXPECT_GT(correction->modulus_factor, 0.98);  // most of it is the mesh's doing
+  EXPECT_LT(correction->mesh.num_elements(), 4 * correction->given_cells);
+  EXPECT_GE(correction->model_error_factor, 0.1);
+  EXPECT_LE(correction->model_error_factor, 1);
+}
+
+TEST(CorrectMesh, LeavesTheGivenMeshAloneUnlessAsked) {
+  EXPECT_FALSE(CorrectMesh(Sheet(), MeshAim::kGiven, false).has_value());
 }
 
 TEST(CorrectMesh, RefusesTheLimitOfCellsThatLock) {

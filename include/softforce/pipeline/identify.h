@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "softforce/estimation/identification.h"
+#include "softforce/pipeline/mesh_convergence.h"
 #include "softforce/pipeline/tracker.h"
 #include "softforce/scene/change_scene.h"
 
@@ -19,7 +20,9 @@ struct IdentifyOptions {
   std::map<std::string, std::string> sources;  // camera → file; instead of those in the scene
   int registration_frames = 10;                // as for a run
   bool show_progress = true;
-  TrackerOptions tracker;  // model errors and all: as for the runs that the values are meant for
+  // As for the runs that the values are meant for.
+  MeshAim mesh_aim = MeshAim::kGiven;
+  TrackerOptions tracker;  // model errors: for the given mesh; less of them is left if corrected
   const std::atomic<bool>* stop = nullptr;  // set from outside: end, with nothing usable
   // Where the values will be written; must be none of the files of the job. Empty: nowhere, or into
   // the scene itself.
@@ -41,7 +44,8 @@ struct IdentifyReport {
   scene::SceneChanges changes;  // what to write into the scene; empty unless usable
   std::vector<KnownForce> forces;
   std::vector<std::string> warnings;
-  int frames_left_out = 0;  // of those with known forces: nothing was seen in them
+  MeshAim mesh_aim = MeshAim::kGiven;  // the values are for runs with this correction
+  int frames_left_out = 0;             // of those with known forces: nothing was seen in them
   bool usable = false;
 
   std::string BriefReport() const;  // one line

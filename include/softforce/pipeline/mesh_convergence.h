@@ -9,6 +9,12 @@
 
 namespace softforce::pipeline {
 
+// What the mesh's own error is corrected to, see AssessMesh: nothing, what the once refined mesh
+// shows, or the limit that is estimated from it.
+enum class MeshAim { kGiven, kRefined, kConverged };
+
+const char* Name(MeshAim aim);  // "none", "refined", "converged"
+
 struct MeshConvergenceOptions {
   // Locally refined meshes are made until a further one is expected to change the compliance by
   // less than this share, or would have more than so many times the degrees of freedom of the

@@ -8,16 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "softforce/pipeline/mesh_convergence.h"
 #include "softforce/pipeline/stage_times.h"
 #include "softforce/pipeline/tracker.h"
 #include "softforce/vision/live_cameras.h"
 #include "softforce/vision/recorder.h"
 
 namespace softforce::pipeline {
-
-// What the mesh's own error is corrected to, see AssessMesh: nothing, what the once refined mesh
-// shows, or the limit that is estimated from it.
-enum class MeshAim { kGiven, kRefined, kConverged };
 
 inline constexpr int kMaxThreads = 256;
 
