@@ -89,12 +89,17 @@ std::vector<LocatedForce> LocationEstimator::Floor(const std::vector<Observation
     trial.intensity = placed.directions.transpose() * force.force;
     trials.push_back(trial);
   }
+  const EstimatorOptions allowed = s.options.estimator;
+  s.options.estimator.common_model_error = s.options.estimator.local_model_error = 0;
   const std::vector<char> none(observations.size(), 0);
   const std::vector<WhitenedObservation> used = s.WhitenAll(observations, none, 0);
-  if (!s.RefreshResponse(used)) return {};
+  const bool ready = s.RefreshResponse(used);
+  LinearisedPoints points;
+  if (ready) points = s.Linearise(used, observations);
+  s.options.estimator = allowed;
   std::string culprit;
   std::vector<LocatedForce> floor;
-  if (!s.Describe(s.Linearise(used, observations), trials, &floor, &culprit)) return {};
+  if (!ready || !s.Describe(points, trials, &floor, &culprit)) return {};
   return floor;
 }
 

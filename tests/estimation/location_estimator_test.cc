@@ -59,6 +59,22 @@ TEST_F(LocationEstimatorTest, FindsAForceBetweenCandidates) {
   EXPECT_LT(estimate.forces[0].location_sd(), 1e-3);  // m: candidates are 25 mm apart
 }
 
+TEST_F(LocationEstimatorTest, TheFloorIsOfTheNoiseAlone) {
+  LocationEstimator estimator = sheet_.Estimator(PressedSheet::Options());
+  const Press press{{0.037, 0.061, 0}, {0, 0, 0.4}};
+  const LocationEstimate estimate = Estimate(&estimator, {press});
+  ASSERT_TRUE(estimate.ok()) << estimate.reason;
+  const auto floor = [&](double noise) {
+    return estimator.Floor(sheet_.Observe(truth_.Seen({press}), noise, &random_), estimate.forces)
+        .at(0);
+  };
+
+  const LocatedForce one = floor(kNoise), two = floor(2 * kNoise);
+  EXPECT_NEAR(two.location_sd() / one.location_sd(), 2, 1e-6);  // rounding of the response
+  EXPECT_LT((two.covariance - 4 * one.covariance).norm(), 1e-6 * two.covariance.norm());
+  EXPECT_LT(one.location_sd(), estimate.forces[0].location_sd());  // allows for the model's error
+}
+
 TEST_F(LocationEstimatorTest, FindsThreeForces) {
   LocationEstimator estimator = sheet_.Estimator(PressedSheet::Options());
   const std::vector<Press> presses{{{0.03, 0.03, 0}, {0, 0, 0.4}},

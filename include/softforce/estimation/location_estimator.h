@@ -108,8 +108,9 @@ class LocationEstimator {
   const fem::Equilibrium& state() const;
   const std::vector<LocationCandidate>& candidates() const;
 
-  // The standard deviations that any unbiased estimate of given forces must have (Cramér–Rao), at
-  // the present state: the same forces with covariances set.
+  // The standard deviations that any unbiased estimate of given forces must have (Cramér–Rao) by
+  // the noise and the place of the rig, were the model exact: the same forces with covariances
+  // set, at the present state. Empty if they cannot be told.
   std::vector<LocatedForce> Floor(const std::vector<Observation>& observations,
                                   std::vector<LocatedForce> forces) const;
 
