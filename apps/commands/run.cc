@@ -23,6 +23,7 @@ struct RunArguments {
   std::string correct_mesh = "none";
   std::string method, allocation, force_walk;
   std::string duration, record;
+  std::string draw = "all";
   LiveArguments live;
   bool no_overlay = false;
   pipeline::RunOptions options;
@@ -88,6 +89,7 @@ int Run(RunArguments* arguments) {
   options.time_offsets_s = ParseTimeOffsets(arguments->live);
   options.out = arguments->out;
   options.overlay = !arguments->no_overlay;
+  options.layers = pipeline::ParseOverlayLayers(arguments->draw, "--draw");
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
   options.sources = ParseCameraSources(arguments->cameras);
@@ -153,6 +155,10 @@ Command AddRun(CLI::App* program) {
                   "depend on it")
       ->capture_default_str();
   app->add_option("--overlay-width", arguments->options.overlay_width, "Width of overlay.mp4, px")
+      ->capture_default_str();
+  app->add_option("--draw", arguments->draw,
+                  "What the overlay shows: all, none, or names separated by commas, from " +
+                      pipeline::OverlayLayerNames() + "; with a minus sign: all but these")
       ->capture_default_str();
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
   app->add_flag("--vtu", arguments->options.vtu, "Write a ParaView series (results.pvd)");

@@ -20,7 +20,8 @@ struct FrameInWork {
   FrameResult result;
   Eigen::Isometry3d T_rig_robot;  // where the rig stands in this frame
   Eigen::Matrix3Xd u;             // m, displacements of the nodes in this frame
-  cv::Mat overlay;                // the picture with everything drawn over it
+  double largest_displacement = 0;  // m, of any node in the frames up to this one
+  cv::Mat overlay;                  // the picture with everything drawn over it
 };
 
 // One step of the work on every frame.

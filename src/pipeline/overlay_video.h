@@ -1,34 +1,42 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
-#include "softforce/pipeline/frame_result.h"
+#include "pipeline/frame_pipeline.h"
+#include "softforce/pipeline/overlay_layers.h"
 #include "softforce/pipeline/world.h"
-#include "softforce/vision/recording.h"
+#include "softforce/render/force_chart.h"
 #include "softforce/vision/video_writer.h"
 
 namespace softforce::pipeline {
 
-// overlay.mp4: every camera's picture with body, markers and forces drawn over it, side by side.
+// overlay.mp4: every camera's picture with body, markers and forces drawn over it, side by side,
+// and the forces over time below them.
 class OverlayVideo {
  public:
   // World, rig and scene must outlive it.
   OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene, const World& world,
-               const camera::Rig& rig, int width);
+               const camera::Rig& rig, int width, const OverlayLayers& layers);
 
-  // May be called from several threads.
-  cv::Mat Draw(const vision::FrameSet& frame, const FrameResult& result, const Eigen::Matrix3Xd& u,
-               const Eigen::Isometry3d& T_rig_robot) const;
+  // The pictures. May be called from several threads.
+  cv::Mat Draw(const FrameInWork& frame) const;
 
-  void Add(const cv::Mat& drawn) { writer_.Add(drawn); }
+  // Adds a frame with its pictures as drawn; one after the other.
+  void Add(const FrameResult& result, const cv::Mat& drawn);
   void Commit() { writer_.Commit(); }
 
  private:
+  void Remember(const FrameResult& result);
+
   const scene::Scene& scene_;
   const World& world_;
   const camera::Rig& rig_;
   int width_;
+  OverlayLayers layers_;
   vision::VideoWriter writer_;
+  std::vector<render::ChartSeries> history_;  // of the time that the chart shows
+  double first_s_ = NAN;
 };
 
 }  // namespace softforce::pipeline

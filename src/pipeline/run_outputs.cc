@@ -1,5 +1,7 @@
 #include "pipeline/run_outputs.h"
 
+#include <algorithm>
+
 namespace softforce::pipeline {
 namespace {
 
@@ -14,7 +16,8 @@ RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, con
                        const camera::Rig& rig)
     : world_(world), tables_(options.out, KindsOf(world)) {
   if (options.overlay && !rig.cameras.empty()) {
-    overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, options.overlay_width);
+    overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, options.overlay_width,
+                     options.layers);
   }
   if (options.vtu) series_.emplace(options.out);
 }
@@ -22,15 +25,18 @@ RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, con
 std::vector<Stage> RunOutputs::Stages() {
   using Order = Stage::Order;
   std::vector<Stage> stages;
-  stages.push_back(
-      {"write", Order::kInOrder, [this](FrameInWork* frame) { tables_.Add(frame->result); }});
+  stages.push_back({"write", Order::kInOrder, [this](FrameInWork* frame) {
+                      tables_.Add(frame->result);
+                      largest_displacement_ =
+                          std::max(largest_displacement_, frame->u.colwise().norm().maxCoeff());
+                      frame->largest_displacement = largest_displacement_;
+                    }});
   if (overlay_) {
-    stages.push_back({"draw", Order::kAny, [this](FrameInWork* frame) {
-                        frame->overlay =
-                            overlay_->Draw(frame->set, frame->result, frame->u, frame->T_rig_robot);
+    stages.push_back({"draw", Order::kAny,
+                      [this](FrameInWork* frame) { frame->overlay = overlay_->Draw(*frame); }});
+    stages.push_back({"overlay", Order::kInOrder, [this](FrameInWork* frame) {
+                        overlay_->Add(frame->result, frame->overlay);
                       }});
-    stages.push_back({"overlay", Order::kInOrder,
-                      [this](FrameInWork* frame) { overlay_->Add(frame->overlay); }});
   }
   if (series_) {
     stages.push_back({"vtu", Order::kInOrder, [this](FrameInWork* frame) {

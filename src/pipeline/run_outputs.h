@@ -27,6 +27,7 @@ class RunOutputs {
   const World& world_;
   ResultTables tables_;
   std::optional<OverlayVideo> overlay_;
+  double largest_displacement_ = 0;  // m, so far
   std::optional<VtuSeries> series_;
 };
 

@@ -11,6 +11,7 @@
 namespace softforce::render {
 namespace {
 
+constexpr double kRidgeOpacity = 0.75;
 constexpr double kRidge = 0.8;  // cosine of the angle between the faces of an edge to be stressed
 
 struct Edge {
@@ -67,7 +68,24 @@ bool FacesCamera(const Sight& a, const Sight& b, const Sight& c) {
   return (b.pixel - a.pixel).cross(c.pixel - a.pixel) < 0;
 }
 
+// A 6-node triangle is four flat ones.
+constexpr std::array<std::array<int, 3>, 4> kPieces{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+
+int PiecesPerTriangle(const mesh::Surface& surface) { return surface.order() == 1 ? 1 : 4; }
+
 }  // namespace
+
+int NumPieces(const mesh::Surface& surface) {
+  return PiecesPerTriangle(surface) * surface.num_triangles();
+}
+
+std::array<int, 3> NodesOfPiece(const mesh::Surface& surface, int piece) {
+  const int per_triangle = PiecesPerTriangle(surface);
+  const auto nodes = surface.triangles.col(piece / per_triangle);
+  if (per_triangle == 1) return {nodes(0), nodes(1), nodes(2)};
+  const std::array<int, 3>& corners = kPieces[piece % per_triangle];
+  return {nodes(corners[0]), nodes(corners[1]), nodes(corners[2])};
+}
 
 BodyPicture PictureBody(const View& view, const mesh::Surface& surface, const Eigen::Matrix3Xd& x) {
   BodyPicture body{std::vector<Sight>(x.cols()), std::vector<bool>(surface.num_triangles()),
@@ -77,26 +95,22 @@ BodyPicture PictureBody(const View& view, const mesh::Surface& surface, const Ei
     if (!seen[node]) body.nodes[node] = See(view, x.col(node));
     seen[node] = true;
   }
-  // A 6-node triangle is four flat ones.
-  static constexpr std::array<std::array<int, 3>, 4> kPieces{
-      {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
-  const auto add = [&](const Sight& a, const Sight& b, const Sight& c) {
-    if (FacesCamera(a, b, c)) body.depth.AddTriangle(a, b, c);
-  };
   for (int t = 0; t < surface.num_triangles(); ++t) {
     const auto corner = [&](int i) -> const Sight& { return body.nodes[surface.triangles(i, t)]; };
     body.faces_camera[t] = FacesCamera(corner(0), corner(1), corner(2));
-    if (surface.order() == 1) {
-      add(corner(0), corner(1), corner(2));
-    } else {
-      for (const auto& piece : kPieces) add(corner(piece[0]), corner(piece[1]), corner(piece[2]));
-    }
+  }
+  const int pieces = NumPieces(surface);
+  for (int p = 0; p < pieces; ++p) {
+    const std::array<int, 3> nodes = NodesOfPiece(surface, p);
+    const Sight &a = body.nodes[nodes[0]], &b = body.nodes[nodes[1]], &c = body.nodes[nodes[2]];
+    if (FacesCamera(a, b, c)) body.depth.AddTriangle(a, b, c, p);
   }
   return body;
 }
 
 void DrawNet(Brush* brush, const View& view, const mesh::Surface& surface,
-             const Eigen::Matrix3Xd& x, const BodyPicture& body) {
+             const Eigen::Matrix3Xd& x, const BodyPicture& body, const cv::Vec3b& colour,
+             double opacity) {
   std::vector<Edge> edges = CollectEdges(surface);
   edges.erase(
       std::remove_if(edges.begin(), edges.end(),
@@ -124,7 +138,7 @@ void DrawNet(Brush* brush, const View& view, const mesh::Surface& surface,
         draw(edge.middle, edge.second, width);
       }
     }
-    brush->Paint(kSkyBlue, stressed ? 0.75 : 0.4);
+    brush->Paint(colour, stressed ? kRidgeOpacity : opacity);
   }
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "render/brush.h"
 #include "render/depth_buffer.h"
 #include "render/view.h"
@@ -11,14 +14,19 @@ namespace softforce::render {
 struct BodyPicture {
   std::vector<Sight> nodes;        // as many as columns of x; set for nodes of the surface
   std::vector<bool> faces_camera;  // of each triangle
-  DepthBuffer depth;
+  DepthBuffer depth;               // its triangles are pieces, see NodesOfPiece
 };
+
+// The flat pieces of the surface's triangles: one of 3 nodes, four of 6.
+int NumPieces(const mesh::Surface& surface);
+std::array<int, 3> NodesOfPiece(const mesh::Surface& surface, int piece);
 
 BodyPicture PictureBody(const View& view, const mesh::Surface& surface, const Eigen::Matrix3Xd& x);
 
-// The edges of the visible faces: thin and translucent, stronger along the outline and sharp
-// ridges.
+// The edges of the visible faces: thin and translucent, `opacity` of 1, stronger along the outline
+// and sharp ridges.
 void DrawNet(Brush* brush, const View& view, const mesh::Surface& surface,
-             const Eigen::Matrix3Xd& x, const BodyPicture& body);
+             const Eigen::Matrix3Xd& x, const BodyPicture& body, const cv::Vec3b& colour,
+             double opacity);
 
 }  // namespace softforce::render

@@ -29,7 +29,7 @@ std::pair<double, double> RowSpan(const std::array<cv::Point2d, 3>& corners, dou
 
 }  // namespace
 
-void DepthBuffer::AddTriangle(const Sight& a, const Sight& b, const Sight& c) {
+void DepthBuffer::AddTriangle(const Sight& a, const Sight& b, const Sight& c, int name) {
   const cv::Point2d ab = b.pixel - a.pixel;
   const cv::Point2d ac = c.pixel - a.pixel;
   const double area = ab.x * ac.y - ab.y * ac.x;  // px², twice the triangle's
@@ -47,11 +47,15 @@ void DepthBuffer::AddTriangle(const Sight& a, const Sight& b, const Sight& c) {
     const int first = std::max(0, static_cast<int>(std::ceil(left)));
     const int last = std::min(inverse_depth_.cols - 1, static_cast<int>(std::floor(right)));
     float* row = inverse_depth_[y];
+    int* names = nearest_[y];
     const auto step = static_cast<float>(per_x);
     const auto start =
         static_cast<float>(a.inverse_depth + per_x * (first - a.pixel.x) + per_y * (y - a.pixel.y));
     for (int x = first; x <= last; ++x) {
-      row[x] = std::max(row[x], start + step * static_cast<float>(x - first));
+      const float here = start + step * static_cast<float>(x - first);
+      if (here <= row[x]) continue;
+      row[x] = here;
+      names[x] = name;
     }
   }
 }

@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "render/arrow.h"
 #include "render/body_net.h"
+#include "render/colour_scale.h"
 #include "render/labels.h"
 #include "render/marks.h"
 #include "render/palette.h"
+#include "render/region.h"
+#include "render/skin.h"
 
 namespace softforce::render {
 namespace {
@@ -59,7 +63,10 @@ void DrawForce(Drawing* drawing, const DepthBuffer& depth, const OverlayForce& f
   const Arrow arrow = PlaceArrow(force, scene, metres_per_newton);
   const auto picture = PictureArrow(view, depth, arrow, force.p_robot);
   if (!picture) return;
+  DrawRegion(&drawing->brush, view, force.p_robot, force.place_covariance, kOrange);
   DrawArrow(&drawing->brush, view, arrow, *picture);
+  DrawRegion(&drawing->brush, view, picture->pulls ? arrow.tip : arrow.tail,
+             metres_per_newton * metres_per_newton * force.covariance, kOrange);
   for (const cv::Point2d& point : picture->shaft) {
     drawing->occupied.push_back(BoxAt(point, 6 * view.unit));
   }
@@ -71,6 +78,7 @@ void DrawMarker(Drawing* drawing, const OverlayMarker& marker) {
   const View& view = drawing->view;
   const Sight sight = See(view, marker.p_robot);
   if (!sight.visible) return;
+  DrawRegion(&drawing->brush, view, marker.p_robot, marker.covariance, kPurple);
   DrawMark(&drawing->brush, marker.mark, sight.pixel, view.unit);
   drawing->occupied.push_back(BoxAt(sight.pixel, MarkRadius(view.unit)));
   drawing->labels.push_back({marker.label,
@@ -80,6 +88,42 @@ void DrawMarker(Drawing* drawing, const OverlayMarker& marker) {
                              sight.pixel,
                              MarkRadius(view.unit) + 1,
                              {}});
+}
+
+// A diamond; fainter behind the body.
+void DrawCandidate(Drawing* drawing, const DepthBuffer& depth, const OverlayCandidate& candidate) {
+  const View& view = drawing->view;
+  const Sight sight = See(view, candidate.p_robot);
+  if (!sight.visible) return;
+  const bool hidden = depth.Hides(sight.pixel, sight.inverse_depth);
+  const double arm = 5 * view.unit;
+  const cv::Point2d across(arm, 0), up(0, arm), at = sight.pixel;
+  const std::vector<cv::Point2d> outline{at + across, at + up, at - across, at - up, at + across};
+  drawing->brush.PaintSeamed(kWhite, hidden ? 0.4 : 0.9, 0.75 * view.unit, [&](double extra) {
+    drawing->brush.Polyline(outline, 1.5 * view.unit + extra);
+  });
+}
+
+void DrawAxes(Drawing* drawing, const DepthBuffer& depth, double length) {
+  const View& view = drawing->view;
+  static const std::array<cv::Vec3b, 3> kColours{kVermillion, kGreen, kSkyBlue};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d tip = length * Eigen::Vector3d::Unit(axis);
+    const Sight sight = See(view, tip);
+    if (!sight.visible || !See(view, Eigen::Vector3d::Zero()).visible) continue;
+    for (const Stroke& stroke : TracePath(view, depth, {Eigen::Vector3d::Zero(), tip})) {
+      drawing->brush.PaintSeamed(
+          kColours[axis], stroke.hidden ? 0.4 : 1, 0.75 * view.unit,
+          [&](double extra) { drawing->brush.Polyline(stroke.points, 2 * view.unit + extra); });
+    }
+    drawing->labels.push_back({std::string(1, static_cast<char>('x' + axis)),
+                               Style(0.5, view.unit),
+                               kColours[axis],
+                               false,
+                               sight.pixel,
+                               4 * view.unit,
+                               {}});
+  }
 }
 
 }  // namespace
@@ -99,7 +143,13 @@ cv::Mat DrawOverlay(const cv::Mat& grey, const camera::Camera& camera,
   const Eigen::Matrix3Xd& x = scene.x ? *scene.x : no_nodes;
   const BodyPicture body = PictureBody(drawing.view, surface, x);
 
-  DrawNet(&drawing.brush, drawing.view, surface, x, body);
+  if (scene.field) DrawSkin(picture, drawing.view, surface, x, body, *scene.field);
+  if (options.net) {
+    // Over colours that mean something a net of no colour, and little of it.
+    DrawNet(&drawing.brush, drawing.view, surface, x, body, scene.field ? kWhite : kSkyBlue,
+            scene.field ? 0.12 : 0.4);
+  }
+  if (scene.axes > 0) DrawAxes(&drawing, body.depth, scene.axes);
   for (const OverlayCable& cable : scene.cables) {
     const std::vector<Stroke> strokes = TracePath(drawing.view, body.depth, cable.path);
     DrawCable(&drawing.brush, drawing.view, strokes);
@@ -113,6 +163,14 @@ cv::Mat DrawOverlay(const cv::Mat& grey, const camera::Camera& camera,
   const cv::Point corner(static_cast<int>(12 * unit), static_cast<int>(12 * unit));
   if (!scene.caption.empty()) {
     drawing.occupied.push_back(TextBlockBox(scene.caption, corner, caption_style));
+  }
+  if (scene.field) {
+    const cv::Point right(picture.cols - corner.x, corner.y);
+    drawing.occupied.push_back(
+        DrawColourBar(&drawing.brush, picture, *scene.field, right, Style(0.5, unit), unit));
+  }
+  for (const OverlayCandidate& candidate : scene.candidates) {
+    DrawCandidate(&drawing, body.depth, candidate);
   }
   for (const OverlayForce& force : scene.forces) {
     DrawForce(&drawing, body.depth, force, scene, options.metres_per_newton);

@@ -197,6 +197,53 @@ TEST(DrawOverlay, DrawsTheNetThroughTheNodes) {
   }
 }
 
+TEST(DrawOverlay, ShowsAFieldInTheColoursOfItsScale) {
+  const Plate plate = MakePlate({0}, true);
+  OverlayScene scene;
+  scene.surface = &plate.surface;
+  scene.x = &plate.x;
+  // From 0 at the left end to the end of the scale at the right one.
+  scene.field = SurfaceField{"displacement", "mm", (plate.x.row(0).array() + 0.08) / 0.16, 1};
+  OverlayOptions options;
+  options.net = false;
+
+  const cv::Mat3b drawn = DrawOverlay(MakePicture(), MakeCamera(), FacingCamera(), scene, options);
+
+  const auto at = [&](double x) { return drawn(cv::Point(PixelOf({x, 0.01, 0}))); };
+  const cv::Vec3b low = at(-0.078), middle = at(0), high = at(0.078);
+  EXPECT_GT(low[0], low[1]) << "violet at the lower end: more blue than green";
+  EXPECT_GT(middle[1], middle[2]) << "green in the middle: more than red";
+  EXPECT_GT(high[2], high[0]) << "yellow at the upper end: more red than blue";
+  const auto light = [](const cv::Vec3b& c) { return 0.11 * c[0] + 0.59 * c[1] + 0.3 * c[2]; };
+  EXPECT_LT(light(low), light(middle));
+  EXPECT_LT(light(middle), light(high));
+  EXPECT_EQ(drawn(cv::Point(PixelOf({0, -0.1, 0}))), cv::Vec3b::all(kGrey)) << "beside the body";
+}
+
+TEST(DrawOverlay, DrawsTheRegionOfAHiddenMarkerAsLargeAsItIs) {
+  OverlayScene scene;
+  const double sd = 5e-3;  // m
+  scene.markers = {
+      {"", MarkerMark::kHidden, {0.01, 0.02, 0}, sd * sd * Eigen::Matrix3d::Identity()}};
+
+  const cv::Rect box = cv::boundingRect(Changed(Draw(scene)));
+
+  // 95 %: 2.45 standard deviations, and the width of the line with its seam.
+  EXPECT_NEAR(box.width, 2 * 2.448 * sd / 0.5 * 800, 6);  // px
+  EXPECT_NEAR(box.height, 2 * 2.448 * sd / 0.5 * 800, 6);
+}
+
+TEST(DrawOverlay, DrawsCandidatesAndAxesWhereTheyAre) {
+  OverlayScene scene;
+  scene.candidates = {{"0", {0.06, -0.05, 0}}};
+  EXPECT_TRUE(cv::boundingRect(Changed(Draw(scene))).contains(PixelOf({0.06, -0.05, 0})));
+  scene.candidates.clear();
+  scene.axes = 0.05;
+  const cv::Mat1b changed = Changed(Draw(scene));
+  EXPECT_GT(changed(cv::Point(PixelOf({0.03, 0, 0}))), 0);
+  EXPECT_GT(changed(cv::Point(PixelOf({0, 0.03, 0}))), 0);
+}
+
 TEST(DrawOverlay, DoesNotDrawFacesBehindOthers) {
   const Plate front = MakePlate({0}, true);
   Plate both = MakePlate({0, -0.02}, true);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "softforce/pipeline/mesh_convergence.h"
+#include "softforce/pipeline/overlay_layers.h"
 #include "softforce/pipeline/stage_times.h"
 #include "softforce/pipeline/tracker.h"
 #include "softforce/vision/live_cameras.h"
@@ -36,6 +37,7 @@ struct RunOptions {
   bool vtu = false;     // write a ParaView series
   bool show_progress = true;
   int overlay_width = 1920;  // px, of all cameras side by side
+  OverlayLayers layers;      // that the overlay shows
   int threads = 0;           // that the stages share; 0: as many as the machine has cores
   MeshAim mesh_aim = MeshAim::kGiven;
   TrackerOptions tracker;  // model errors: for the given mesh; less of them is left if corrected
