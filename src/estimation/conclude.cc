@@ -32,7 +32,7 @@ bool ForceEstimator::State::AreLoadsObservable(const std::vector<ResidualBlock>&
                                                ForceEstimate* estimate) const {
   using Status = ForceEstimate::Status;
   const int n = num_loads();
-  if (n == 0) return true;
+  if (n == 0 || std::isfinite(options.force_scale)) return true;
   // What the observations say by themselves, the offset being known. An actuator that is known
   // somewhat counts as observed by that.
   Eigen::MatrixXd J = Stack(blocks, true).leftCols(n);

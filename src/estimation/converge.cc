@@ -105,6 +105,11 @@ std::vector<ResidualBlock> ForceEstimator::State::Linearise(
       add_prior(i, Eigen::MatrixXd::Constant(1, 1, 1 / sd), Eigen::VectorXd::Zero(1));
     }
   }
+  const int n_forces = num_components();
+  if (std::isfinite(options.force_scale) && n_forces > 0) {
+    add_prior(0, Eigen::MatrixXd::Identity(n_forces, n_forces) / options.force_scale,
+              Eigen::VectorXd::Zero(n_forces));
+  }
   if (walk_covariance.size() > 0 && walk_covariance.allFinite()) {
     const Eigen::MatrixXd L = walk_covariance.llt().matrixL();
     add_prior(0, L.inverse(), last_intensity);

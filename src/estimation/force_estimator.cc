@@ -28,6 +28,7 @@ void EstimatorOptions::Check() const {
   require(local_model_error >= 0 && local_model_error < 1, "local_model_error",
           "must be at least 0 and below 1");
   require(force_walk > 0, "force_walk", "must be greater than 0 N");
+  require(force_scale > 0, "force_scale", "must be greater than 0 N");
   require(loss_scale > 0, "loss_scale", "must be greater than 0");
   // Below, 1 − probability is 1 in double precision.
   require(rejection_probability >= 1e-15 && rejection_probability < 1, "rejection_probability",

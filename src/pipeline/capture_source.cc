@@ -44,7 +44,6 @@ CaptureSource::CaptureSource(const scene::Scene& scene, const RunOptions& option
       options_(options),
       points_(scene::ReadMeasuredPoints(*scene.measured, scene.markers)) {
   RefuseCameraOptions(options);
-  RefuseUnknownLocations(scene);
   if (!options.out.empty()) RefuseToOverwrite(FilesOf(scene, {}), options.out);
   const int last = points_.frames.back().frame;
   if (options.first_frame > last) {

@@ -61,9 +61,7 @@ FrameFeed::FrameFeed(const scene::Scene& scene, const camera::Rig& rig, const Ru
     RefuseToRecordAPart();
     vision::RefuseUsedFolder(options.record);
   }
-  if (live_) {
-    RefuseUnknownLocations(scene);
-  } else {
+  if (!live_) {
     source_ = std::make_unique<vision::Recording>(OpenRecording(
         scene, rig, sources_, options.first_frame, "--frames", options.time_offsets_s));
   }

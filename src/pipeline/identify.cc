@@ -167,6 +167,7 @@ RunOptions Job::SourceOptions() const {
 
 // All frames asked for must be there, so the last one is looked for.
 std::unique_ptr<MarkerSource> Job::OpenSource() const {
+  RefuseUnknownLocations(scene_);
   RefuseToReplaceInputs();
   RefuseLiveSources(scene_, SourcesOf(scene_, options_.sources));
   std::unique_ptr<MarkerSource> source = OpenMarkerSource(scene_, source_options_);
@@ -210,7 +211,7 @@ bool Job::PlayRecording() {
     ++used;
     known_.Add(frame->frame, ActuationAt(scene_, frame->time_s), tracker.observations());
     // The scene's values may be too wrong for a run: that is what is to be put right.
-    if (result.forces.empty() && ++odd <= kMaxFrameWarnings) {
+    if (!result.ok() && ++odd <= kMaxFrameWarnings) {
       Warn(
           fmt::format("frame {} is used, though a run with the scene as it is finds no forces: "
                       "{}: {}",

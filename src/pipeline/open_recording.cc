@@ -59,7 +59,6 @@ vision::Recording OpenRecording(const scene::Scene& scene, const camera::Rig& ri
                                 const std::vector<vision::Recording::Source>& sources,
                                 int first_frame, const std::string& asked_by,
                                 const std::map<std::string, double>& time_offsets_s) {
-  RefuseUnknownLocations(scene);
   RefuseLiveSources(scene, sources);
   vision::Recording recording(rig, sources, time_offsets_s);
   const int announced = recording.announced_frames();

@@ -32,7 +32,7 @@ render::MarkerMark MarkOf(MarkerStatus status) {
   return render::MarkerMark::kHidden;
 }
 
-std::string NameOf(const ForceResult& force) { return fmt::format("F{}", force.candidate); }
+std::string NameOf(const ForceResult& force) { return fmt::format("F{}", force.identity); }
 
 void AddMarkers(const FrameResult& result, bool regions, render::OverlayScene* content) {
   for (const MarkerResult& marker : result.markers) {
@@ -50,7 +50,10 @@ void AddForces(const FrameResult& result, bool regions, render::OverlayScene* co
   for (const ForceResult& force : result.forces) {
     render::OverlayForce drawn{NameOf(force),  force.position,          force.force,
                                force.NormSd(), Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
-    if (regions) drawn.covariance = force.covariance;
+    if (regions) {
+      drawn.covariance = force.covariance;
+      drawn.place_covariance = force.place_covariance;
+    }
     content->forces.push_back(drawn);
   }
 }
@@ -93,8 +96,10 @@ std::vector<std::string> Caption(const scene::Scene& scene, const FrameResult& r
   std::vector<std::string> lines{
       fmt::format("{}   frame {}   {:.3f} s", scene.name, result.frame, result.time_s),
       fmt::format("{} of {} markers in view", in_view, result.markers.size())};
-  if (result.forces.empty()) {
+  if (!result.ok()) {
     lines.push_back(fmt::format("no forces: {}", estimation::Name(result.status)));
+  } else if (result.forces.empty()) {
+    lines.push_back("no force");
   }
   return lines;
 }

@@ -51,7 +51,10 @@ std::optional<Tracker::Attempt> Tracker::SearchWidely(
   constexpr double kAlike = 0.25;       // spacings, between the markers of two answers
   // A body that stays away, or a rig that was moved, is not to hold up all frames.
   constexpr int kLongestWait = 31;  // frames between two searches
-  const int least = estimator_.num_components() + 2;
+  // Of forces near many candidates a few act.
+  constexpr int kFewForces = 6;  // components
+  const int components = estimator_.num_components();
+  const int least = (locator_ ? std::min(components, kFewForces) : components) + 2;
   // Right answers take 5 to 15 factorisations each.
   constexpr int kMostOfOne = 20, kMostOfAll = 60;
   int left = kMostOfAll;

@@ -59,8 +59,8 @@ void RefuseUnknownLocations(const scene::Scene& scene) {
   if (scene.forces.known_locations) return;
   throw base::InputError(
       scene.file.string() + ": forces: known",
-      "is false, but this version estimates forces at known places only",
-      "Set 'known: true' and list the places where the forces act as candidates.");
+      "is false, but values are found from forces at known places only",
+      "Set 'known: true' and list the places where the weights hang as candidates.");
 }
 
 void RefuseToOverwrite(const std::vector<std::filesystem::path>& inputs,

@@ -65,15 +65,13 @@ void ResultTables::Add(const FrameResult& result) {
   const std::string moment = fmt::format("{},{:.6f}", result.frame, result.time_s);
   if (result.forces.empty()) {
     fmt::print(forces_.stream(), "{},,,{},,,,,,,,,,,,,,\n", moment,
-               estimation::Name(result.status));
+               result.ok() ? "none" : estimation::Name(result.status));
   }
-  for (size_t i = 0; i < result.forces.size(); ++i) {
-    const ForceResult& force = result.forces[i];
-    // Places are given in the scene, hence known without error.
-    fmt::print(forces_.stream(), "{},{},{},{},{},{},{},{},{},{}\n", moment, i, force.candidate,
-               estimation::Name(result.status), Millimetres(force.position),
+  for (const ForceResult& force : result.forces) {
+    fmt::print(forces_.stream(), "{},{},{},{},{},{},{},{},{},{}\n", moment, force.identity,
+               force.candidate, estimation::Name(result.status), Millimetres(force.position),
                Millimetres(force.rest), Newtons(force.force), Cell(force.force.norm(), 6),
-               Newtons(force.covariance.diagonal().cwiseSqrt()), Cell(0, 4));
+               Newtons(force.covariance.diagonal().cwiseSqrt()), Cell(1e3 * force.PlaceSd(), 4));
   }
   for (const MarkerResult& marker : result.markers) {
     fmt::print(markers_.stream(), "{},{},{},{},{},{},{}\n", moment, marker.id, Name(marker.status),

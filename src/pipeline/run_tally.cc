@@ -14,9 +14,9 @@ void RunTally::Add(const FrameResult& result) {
   ++report.frames;
   ++frame_statuses[estimation::Name(result.status)];
   for (const MarkerResult& marker : result.markers) ++marker_statuses[Name(marker.status)];
-  if (!result.forces.empty()) {
+  if (result.ok()) {
     ++report.usable_frames;
-    report.last = result;
+    if (!result.forces.empty()) report.last = result;
     if (result.degrees_of_freedom > 0) {
       reduced_chi2.push_back(result.chi2 / result.degrees_of_freedom);
     }

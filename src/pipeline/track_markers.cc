@@ -54,7 +54,7 @@ Eigen::VectorXd Tracker::Walk(const std::vector<MovingFeature>& features) const 
   Eigen::VectorXd walk = Eigen::VectorXd::Zero(n);
   if (!(softest > 0)) return walk;
   int first = 0;
-  for (const estimation::ForceSite& site : world_.sites) {
+  for (const estimation::ForceSite& site : estimator_.sites()) {
     const auto directions = static_cast<int>(site.directions.cols());
     // What acts on a place may act in any direction. A place that hardly moves the markers must not
     // be given an endless walk: a thin body would buckle under it.

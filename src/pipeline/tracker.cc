@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/actuators.h"
+#include "pipeline/force_locator.h"
 #include "softforce/base/input_error.h"
 #include "softforce/pipeline/observe_points.h"
 
@@ -51,12 +52,31 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
       T_rig_robot_(T_rig_robot),
       options_(options),
       features_(scene, world),
-      estimator_(world.solver.get(), world.sites, options.estimator, Uncertainties(scene)),
+      estimator_(world.solver.get(),
+                 scene.forces.known_locations ? world.sites : FollowingSites(world),
+                 scene.forces.known_locations ? options.estimator
+                                              : FollowingOptions(world, options.estimator),
+                 Uncertainties(scene)),
       intensity_covariance_(
           Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
   options_.Check();
   registration_covariance_ = InRobotFrame(rig_covariance, T_rig_robot_);
   estimator_.SetRegistrationCovariance(registration_covariance_);
+  if (scene.forces.known_locations) return;
+  if (options.estimator.method != estimation::EstimationMethod::kConverged) {
+    throw base::InputError("--method",
+                           "is for forces at known places; the scene has 'known: false'");
+  }
+  estimation::LocationOptions location = options.location;
+  location.estimator = options.estimator;
+  locator_ = std::make_unique<ForceLocator>(scene, world, location);
+  locator_->SetRegistrationCovariance(registration_covariance_);
+}
+
+Tracker::~Tracker() = default;
+
+const fem::Equilibrium& Tracker::state() const {
+  return locator_ ? locator_->state() : estimator_.state();
 }
 
 FrameResult Tracker::Process(int frame, double time_s,
@@ -95,7 +115,11 @@ FrameResult Tracker::Process(int frame, double time_s,
   if (estimate.ok()) {
     search_ = {};
     intensity_covariance_ = estimate.covariance;
-    result.forces = ForceResults(estimate);
+    if (locator_) {
+      LocateForces(actuation, &result, &rejected);
+    } else {
+      result.forces = ForceResults(estimate);
+    }
   }
   result.markers = MarkerResults(located, rejected);
   TellWhatWasUsed(attempt.chosen, rejected, &result.markers);
@@ -112,6 +136,7 @@ FrameResult Tracker::Skip(int frame, double time_s, const std::string& reason) {
   result.reason = reason;
   const fem::Actuation actuation = ActuationAt(scene_, time_s);
   estimator_.Advance(actuation);
+  if (locator_) locator_->Advance(actuation);
   ++frames_without_forces_;
   observations_.clear();
   sightings_ = {};
@@ -127,6 +152,7 @@ void Tracker::PlaceRig(const Eigen::Isometry3d& T_rig_robot,
   T_rig_robot_ = T_rig_robot;
   registration_covariance_ = InRobotFrame(rig_covariance, T_rig_robot);
   estimator_.SetRegistrationCovariance(registration_covariance_);
+  if (locator_) locator_->SetRegistrationCovariance(registration_covariance_);
 }
 
 }  // namespace softforce::pipeline

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/by_twist.h"
+#include "pipeline/force_locator.h"
 #include "softforce/pipeline/tracker.h"
 
 namespace softforce::pipeline {
@@ -12,12 +13,12 @@ namespace softforce::pipeline {
 void Tracker::AddActuators(const fem::Actuation& actuation, FrameResult* result) const {
   for (size_t c = 0; c < world_.solver->body().cables.size(); ++c) {
     const auto i = static_cast<Eigen::Index>(c);
-    result->cables.push_back({world_.solver->body().cables[c].name, estimator_.state().tension(i),
-                              estimator_.state().shortening(i)});
+    result->cables.push_back(
+        {world_.solver->body().cables[c].name, state().tension(i), state().shortening(i)});
   }
   for (size_t k = 0; k < actuation.pressures.size(); ++k) {
     result->chambers.push_back(
-        {world_.solver->body().chambers[k].name, estimator_.state().load.actuation.pressures[k]});
+        {world_.solver->body().chambers[k].name, state().load.actuation.pressures[k]});
   }
 }
 
@@ -26,7 +27,7 @@ std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& 
   std::vector<ForceResult> forces;
   forces.reserve(world_.sites.size());
   for (int s = 0; s < static_cast<int>(world_.sites.size()); ++s) {
-    forces.push_back({scene_.forces.candidates[s].id, world_.sites[s].at.Apply(x),
+    forces.push_back({s, scene_.forces.candidates[s].id, world_.sites[s].at.Apply(x),
                       world_.sites[s].at.Apply(world_.mesh().nodes),
                       estimator_.Force(estimate.intensity, s),
                       estimator_.ForceCovariance(estimate.covariance, s)});
@@ -34,11 +35,32 @@ std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& 
   return forces;
 }
 
+void Tracker::LocateForces(const fem::Actuation& actuation, FrameResult* result,
+                           std::vector<char>* rejected) {
+  std::vector<estimation::Observation> observations;
+  std::vector<int> features;
+  for (const MarkerObservation& seen : observations_) {
+    if ((*rejected)[seen.feature]) continue;
+    observations.push_back(seen.seen);
+    features.push_back(seen.feature);
+  }
+  const estimation::LocationEstimate located = locator_->Estimate(observations, actuation);
+  result->status = located.status;
+  result->reason = located.reason;
+  result->chi2 = located.chi2;
+  result->degrees_of_freedom = located.degrees_of_freedom;
+  if (!located.ok()) return;
+  for (size_t i = 0; i < features.size(); ++i) {
+    if (located.rejected[i]) (*rejected)[features[i]] = 1;
+  }
+  result->forces = locator_->Results(located);
+}
+
 // A dot is its only feature. A tag is measured by its corners: its centre is where the model has
 // it, moved by the mean misfit of the corners, since the surface between them is curved.
 std::vector<MarkerResult> Tracker::MarkerResults(
     const std::vector<FeatureObservation>& observations, const std::vector<char>& rejected) const {
-  const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
+  const Eigen::Matrix3Xd x = world_.mesh().nodes + state().u;
   std::vector<MarkerResult> markers;
   for (size_t m = 0; m < world_.markers.size(); ++m) {
     MarkerResult marker;
@@ -79,6 +101,7 @@ void Tracker::ExpectMarkers(const std::vector<FeatureObservation>& located,
                             const std::vector<char>& rejected,
                             std::vector<MarkerResult>* markers) const {
   const int n = estimator_.num_components();
+  const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
   const std::vector<MovingFeature> features = Linearise();
   // The forces are known by this frame's observations, nearly alone.
   constexpr double kDiffuse = 100;
@@ -117,9 +140,11 @@ void Tracker::ExpectMarkers(const std::vector<FeatureObservation>& located,
   }
   for (size_t m = 0; m < markers->size(); ++m) {
     MarkerResult& marker = (*markers)[m];
+    // Where the body stands that follows the markers.
+    const Eigen::Vector3d on_body = world_.markers[m].weights.Apply(x) + world_.markers[m].offset;
     Eigen::Matrix3Xd jacobian(3, n + 6);
-    jacobian << estimator_.Compliance(world_.markers[m].weights), ByTwist(marker.model);
-    marker.expected = marker.model + jacobian * delta;
+    jacobian << estimator_.Compliance(world_.markers[m].weights), ByTwist(on_body);
+    marker.expected = on_body + jacobian * delta;
     marker.expected_covariance =
         jacobian * covariance * jacobian.transpose() + own * Eigen::Matrix3d::Identity();
   }

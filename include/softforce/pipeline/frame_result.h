@@ -9,13 +9,17 @@
 namespace softforce::pipeline {
 
 struct ForceResult {
-  int candidate = -1;          // id in the scene
+  int identity = -1;           // stays with a force from frame to frame
+  int candidate = -1;          // id in the scene; the nearest one, if places are not known
   Eigen::Vector3d position;    // m, robot frame, on the deformed body
   Eigen::Vector3d rest;        // m, the same material place on the body at rest
   Eigen::Vector3d force;       // N
   Eigen::Matrix3d covariance;  // N²
+  Eigen::Matrix3d place_covariance = Eigen::Matrix3d::Zero();  // m², of `rest`; 0 if it is known
 
   double NormSd() const;  // N, standard deviation of the force's norm
+  double PlaceSd()
+      const;  // m, standard deviation of the place, along the surface where it is largest
 };
 
 enum class MarkerStatus { kSeen, kOneCamera, kHidden, kRejected };
@@ -49,7 +53,7 @@ struct ChamberResult {
 };
 
 // All that is known of one frame. If the status is not kOk the forces are empty and the model is
-// where it was expected.
+// where it was expected. If it is, and places are not known, forces may be empty, too: none acts.
 struct FrameResult {
   int frame = -1;
   double time_s = NAN;
@@ -61,6 +65,8 @@ struct FrameResult {
   std::vector<ChamberResult> chambers;
   double chi2 = NAN;
   int degrees_of_freedom = 0;
+
+  bool ok() const { return status == estimation::ForceEstimate::Status::kOk; }
 };
 
 }  // namespace softforce::pipeline

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "softforce/estimation/location_estimator.h"
 #include "softforce/pipeline/features.h"
 #include "softforce/pipeline/frame_result.h"
 #include "softforce/pipeline/world.h"
@@ -12,6 +13,8 @@ namespace softforce::pipeline {
 
 struct TrackerOptions {
   estimation::EstimatorOptions estimator;
+  // For scenes whose places of forces are not known; its estimator and patch play no part.
+  estimation::LocationOptions location;
   ObserveOptions observe;
   // How far the marker that moves most may go between two frames by a change of one force (standard
   // deviation), as a share of the smallest marker spacing: sets the forces' random walk, and
@@ -42,8 +45,12 @@ struct MarkerObservation {
 geometry::Matrix6d InRobotFrame(const geometry::Matrix6d& rig_covariance,
                                 const Eigen::Isometry3d& T_rig_robot);
 
+class ForceLocator;
+
 // From detections to forces, frame after frame: predicts the features from the body's last state
 // and the new actuation, allocates detections to them, locates them, and estimates the forces.
+// Where the forces' places are not known, the markers are followed by forces on all candidates,
+// and the forces are then found from what was allocated.
 class Tracker {
  public:
   // `rig_covariance`: of a twist xi in the rig frame, T_rig_robot = ExpSe3(xi) · estimate. Scene,
@@ -51,6 +58,7 @@ class Tracker {
   Tracker(const scene::Scene& scene, const World& world, const camera::Rig& rig,
           const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance,
           const TrackerOptions& options = {});
+  ~Tracker();
 
   FrameResult Process(int frame, double time_s, const std::vector<CameraDetections>& detections);
 
@@ -60,7 +68,7 @@ class Tracker {
   // The rig stands elsewhere from the next frame on.
   void PlaceRig(const Eigen::Isometry3d& T_rig_robot, const geometry::Matrix6d& rig_covariance);
 
-  const fem::Equilibrium& state() const { return estimator_.state(); }
+  const fem::Equilibrium& state() const;
 
   // What the last frame's forces were estimated from, rejected ones included.
   const std::vector<MarkerObservation>& observations() const { return observations_; }
@@ -122,6 +130,9 @@ class Tracker {
                        std::vector<MarkerResult>* markers) const;
   void AddActuators(const fem::Actuation& actuation, FrameResult* result) const;
   std::vector<ForceResult> ForceResults(const estimation::ForceEstimate& estimate) const;
+  // Forces of unknown place, from what was allocated and not rejected; rejects more of it.
+  void LocateForces(const fem::Actuation& actuation, FrameResult* result,
+                    std::vector<char>* rejected);
 
   const scene::Scene& scene_;
   const World& world_;
@@ -130,6 +141,7 @@ class Tracker {
   TrackerOptions options_;
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;
+  std::unique_ptr<ForceLocator> locator_;       // null if places are known
   geometry::Matrix6d registration_covariance_;  // as the estimator takes it
   std::vector<MarkerObservation> observations_;
   FeatureSightings sightings_;
