@@ -19,6 +19,9 @@ constexpr double kFollowing = 0.02;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
 constexpr double kFarthest = 0.1;           // diagonals: beyond it the linear answer leads astray
 constexpr int kMaxHalvings = 6;
+// A response from where the body stood before may swing the forces to and fro: it is renewed if a
+// step is not shorter than this share of the one before.
+constexpr double kSlow = 0.5;
 constexpr double kNearEquilibrium = 1e-5;  // of the diagonal, see ForceEstimator
 // Squared cosine: unknowns of which one is the others' shadow to this share cannot be told apart.
 constexpr double kLeastEigenvalue = 1e-9;
@@ -48,6 +51,7 @@ struct LocationEstimator::State::Round {
   double chi2 = NAN;
   double sd = INFINITY;  // m, the smallest of an observation's coordinates
   double slack = 0;      // m, that the linear answer may be wrong by
+  bool renew = false;    // compute the response where the body stands
 };
 
 bool LocationEstimator::State::Explain(const std::vector<Observation>& observations, bool search,
@@ -74,10 +78,11 @@ bool LocationEstimator::State::Explain(const std::vector<Observation>& observati
     }
     round->sd = INFINITY;
     for (const WhitenedObservation& seen : round->used) round->sd = std::min(round->sd, seen.sd);
-    if (!RefreshResponse(round->used)) {
+    if (!RefreshResponse(round->used, round->renew)) {
       *estimate = Failed(*estimate, Status::kNotConverged, "the body is about to buckle");
       return false;
     }
+    round->renew = false;
     round->points = Linearise(round->used, observations);
     round->forces = from;
     if (search) {
@@ -110,6 +115,7 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
                                                     const fem::Actuation& told) {
   LocationEstimate estimate;
   estimate.rejected.assign(observations.size(), 0);
+  first_new_identity = next_identity;
   const fem::SolveSummary reached =
       MoveTo(NodalForces(forces), told, kNearEquilibrium * diagonal, false);
   if (!reached.ok()) {
@@ -127,7 +133,7 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
   }
   Round round;
   round.forces = forces;
-  double followed_to = kNearEquilibrium * diagonal;
+  double followed_to = kNearEquilibrium * diagonal, last_move = INFINITY;
   for (int i = 0; i < kMaxRounds; ++i) {
     estimate.rounds = i + 1;
     const std::vector<TrialForce> before = round.forces;
@@ -140,10 +146,14 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
                             : 0;
     const double finest =
         std::max(options.estimator.tolerance * round.sd, kFinestTolerance * diagonal);
-    if (i > 0 && SameStructure(before, round.forces) && move <= finest && followed_to <= finest) {
+    // `finest` differs a little from round to round.
+    const bool settled = move <= finest && followed_to <= 1.01 * finest;
+    if (i > 0 && SameStructure(before, round.forces) && settled) {
       Conclude(&round, &estimate);
       return estimate;
     }
+    round.renew = i > 1 && move > kSlow * last_move && move > finest;
+    last_move = move;
     double share = move > 0 ? std::min(1.0, kFarthest * diagonal / move) : 1;
     const Eigen::Matrix3Xd start = state.load.forces;
     bool moved = false;
@@ -261,6 +271,7 @@ void LocationEstimator::State::FindAlternatives(const LinearisedPoints& points,
 
 void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate) {
   Round& round = *last;
+  next_identity = first_new_identity;  // those that came and went on the way leave no gap
   Identify(forces, &round.forces);
   std::string culprit;
   if (!Describe(round.points, round.forces, &estimate->forces, &culprit)) {

@@ -66,6 +66,7 @@ LocationEstimate LocationEstimator::Estimate(const std::vector<Observation>& obs
   if (!estimate.ok()) {
     s.state = before;
     s.forces = forces_before;
+    s.next_identity = s.first_new_identity;
   }
   return estimate;
 }

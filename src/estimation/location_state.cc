@@ -52,8 +52,9 @@ fem::SolveSummary LocationEstimator::State::MoveTo(const Eigen::Matrix3Xd& nodal
   return summary;
 }
 
-bool LocationEstimator::State::RefreshResponse(const std::vector<WhitenedObservation>& used) {
-  const double max_staleness = options.estimator.max_staleness;
+bool LocationEstimator::State::RefreshResponse(const std::vector<WhitenedObservation>& used,
+                                               bool renew) {
+  const double max_staleness = renew ? 0 : options.estimator.max_staleness;
   const auto same = [](const WhitenedObservation& seen, const mesh::NodalWeights& point) {
     return seen.observation->at.nodes == point.nodes &&
            seen.observation->at.weights == point.weights;

@@ -22,8 +22,9 @@ struct LocationEstimator::State {
 
   // --- The observations, linearised where the body stands.
   // Computes the response of the body to forces on the observed points, unless what it has is for
-  // the same points and about the same shape. False if the body is about to buckle.
-  bool RefreshResponse(const std::vector<WhitenedObservation>& used);
+  // the same points and about the same shape; `renew`: exactly the same. False if the body is about
+  // to buckle.
+  bool RefreshResponse(const std::vector<WhitenedObservation>& used, bool renew = false);
   LinearisedPoints Linearise(const std::vector<WhitenedObservation>& used,
                              const std::vector<Observation>& observations) const;
   // `slack` (m): what the linear answer may be wrong by, in each coordinate.
@@ -78,6 +79,7 @@ struct LocationEstimator::State {
   fem::Equilibrium state;
   std::vector<TrialForce> forces;  // of the last usable estimate
   int next_identity = 0;
+  int first_new_identity = 0;  // of the frame at hand
 
   Eigen::MatrixXd response;  // 3N×3m, see LinearisedPoints
   std::vector<mesh::NodalWeights> response_points;

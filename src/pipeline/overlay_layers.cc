@@ -46,7 +46,9 @@ OverlayLayers ParseOverlayLayers(const std::string& text, const std::string& opt
   OverlayLayers layers = Every(left_out);
   std::istringstream names(text);
   std::string name;
-  while (std::getline(names, name, ',')) {
+  do {
+    name.clear();
+    std::getline(names, name, ',');
     const bool minus = !name.empty() && name[0] == '-';
     const auto layer = std::find_if(kLayers.begin(), kLayers.end(), [&](const Layer& one) {
       return name.substr(minus ? 1 : 0) == one.name;
@@ -61,7 +63,7 @@ OverlayLayers ParseOverlayLayers(const std::string& text, const std::string& opt
                       option));
     }
     layers.*layer->on = !minus;
-  }
+  } while (!names.eof());
   return layers;
 }
 

@@ -147,6 +147,9 @@ TEST(Identify, RefusesBadInput) {
     EXPECT_NE(result.errors.find(says), std::string::npos) << options << ": " << result.errors;
   };
   refused("", "--weights");
+  testing::Edit(demo / "scene.yaml", "known: true", "known: false");
+  refused("--weights '20:30: 0 = 1 N'", "known places only");
+  testing::Edit(demo / "scene.yaml", "known: false", "known: true");
   refused("--weights '20:30: 5 = 1 N'", "no candidate \"5\"");
   refused("--weights '20:31: none'", "the recording has 30 frames");
   refused("--weights '29: none' --unknown stiffness", "expected youngs_modulus");

@@ -113,9 +113,6 @@ const Spoilt kCases[] = {
        Record(f, 30, {640, 512});
      },
      {"left.mp4", "640x512", "1280x1024"}},
-    {"PlacesUnknown",
-     [](const Folder& f) { testing::Edit(f / "scene.yaml", "known: true", "known: false"); },
-     {"scene.yaml", "known"}},
     {"OneLiveSource",
      [](const Folder& f) {
        testing::Edit(f / "scene.yaml", "left: left.mp4", "left: 'rtsp://camera/left'");

@@ -26,7 +26,8 @@ FrameResult GoodFrame() {
   result.frame = 3;
   result.time_s = 0.1;
   result.status = estimation::ForceEstimate::Status::kOk;
-  result.forces.push_back({7,
+  result.forces.push_back({0,
+                           7,
                            {0.01, 0.02, 0.03},
                            {0.011, 0.02, 0.03},
                            {0, 0, -0.5},
@@ -73,6 +74,24 @@ TEST(ResultTables, GiveCablesAndChambersTheirOwnColumns) {
   EXPECT_EQ(ReadText(folder / "actuation.csv"),
             "frame,time_s,actuator,tension_N,displacement_mm,pressure_kPa\n"
             "3,0.100000,left,0.900000,8.00000,\n3,0.100000,belly,,,12.50000\n");
+}
+
+TEST(ResultTables, GiveAForceItsIdentityAndHowSureItsPlaceIs) {
+  const std::filesystem::path folder = FreshFolder("result_tables_place");
+  FrameResult frame = GoodFrame();
+  frame.forces[0].identity = 4;
+  frame.forces[0].place_covariance = Eigen::Vector3d(1e-6, 4e-6, 0).asDiagonal();  // m²
+  FrameResult none = GoodFrame();
+  none.forces.clear();
+  ResultTables tables(folder, {});
+  tables.Add(frame);
+  tables.Add(none);
+  tables.Commit();
+
+  const std::string text = ReadText(folder / "forces.csv");
+  EXPECT_NE(text.find("\n3,0.100000,4,7,ok,"), std::string::npos) << text;
+  EXPECT_NE(text.find(",0.030000,2.0000\n3,0.100000,,,none,,,,,,,,,,,,,,\n"), std::string::npos)
+      << text;
 }
 
 TEST(ResultTables, SayWhyAFrameIsNotUsable) {
