@@ -18,8 +18,8 @@ struct FrameInWork {
   std::vector<CameraDetections> detections;
   std::vector<std::vector<vision::Tag>> fiducials;  // per camera; empty: not looked for
   FrameResult result;
-  Eigen::Isometry3d T_rig_robot;  // where the rig stands in this frame
-  Eigen::Matrix3Xd u;             // m, displacements of the nodes in this frame
+  Eigen::Isometry3d T_rig_robot;    // where the rig stands in this frame
+  Eigen::Matrix3Xd u;               // m, displacements of the nodes in this frame
   double largest_displacement = 0;  // m, of any node in the frames up to this one
   cv::Mat overlay;                  // the picture with everything drawn over it
 };

@@ -36,8 +36,8 @@ struct EstimatorOptions {
   // about the last usable estimate, whose covariance grows by it with every frame. Infinite: each
   // frame stands for itself.
   double force_walk = std::numeric_limits<double>::infinity();
-  // N, standard deviation of every force component about 0: a prior in each frame, with which forces
-  // that the observations cannot tell apart are shared out. Infinite: none.
+  // N, standard deviation of every force component about 0: a prior in each frame, with which
+  // forces that the observations cannot tell apart are shared out. Infinite: none.
   double force_scale = std::numeric_limits<double>::infinity();
   double loss_scale = 4;  // whitened distance beyond which the loss grows only linearly (Huber)
   double rejection_probability = 1e-4;  // a right observation is rejected after the fit this often
