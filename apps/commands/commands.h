@@ -13,6 +13,7 @@ struct Command {
 };
 
 Command AddCalibrate(CLI::App* program);
+Command AddDesign(CLI::App* program);
 Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
 Command AddRecord(CLI::App* program);

@@ -42,6 +42,16 @@ std::vector<int> RegionValues(const std::vector<std::string>& names) {
   return values;
 }
 
+void AddCellFields(const std::vector<CellField>& fields, vtkUnstructuredGrid* grid) {
+  for (const CellField& field : fields) {
+    assert(field.values.size() == grid->GetNumberOfCells());
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(field.name.c_str());
+    for (const double value : field.values) array->InsertNextValue(value);
+    grid->GetCellData()->AddArray(array);
+  }
+}
+
 }  // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
@@ -64,13 +74,7 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
     array->SetName(field.name.c_str());
     grid->GetPointData()->AddArray(array);
   }
-  for (const CellField& field : cell_fields) {
-    assert(field.values.size() == mesh.num_elements());
-    vtkNew<vtkDoubleArray> array;
-    array->SetName(field.name.c_str());
-    for (const double value : field.values) array->InsertNextValue(value);
-    grid->GetCellData()->AddArray(array);
-  }
+  AddCellFields(cell_fields, grid);
   if (mesh.region_names.size() > 1 || (!mesh.region_names.empty() && mesh.region_names[0] != "")) {
     const std::vector<int> values = RegionValues(mesh.region_names);
     vtkNew<vtkIntArray> regions;
@@ -78,6 +82,32 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
     for (const int region : mesh.region) regions->InsertNextValue(values[region]);
     grid->GetCellData()->AddArray(regions);
   }
+  return grid;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const Surface& surface, const Eigen::Matrix3Xd& x,
+                                               const std::vector<CellField>& fields) {
+  std::vector<int> number(x.cols(), -1);  // of each node in the file
+  std::vector<Eigen::Index> used;
+  for (const int node : surface.triangles.reshaped()) {
+    if (number[node] >= 0) continue;
+    number[node] = static_cast<int>(used.size());
+    used.push_back(node);
+  }
+  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(ToVtk(x(Eigen::all, used)));
+  grid->SetPoints(points);
+  grid->Allocate(surface.num_triangles());
+  for (int t = 0; t < surface.num_triangles(); ++t) {
+    std::array<vtkIdType, 6> nodes{};
+    for (Eigen::Index i = 0; i < surface.triangles.rows(); ++i) {
+      nodes[i] = number[surface.triangles(i, t)];
+    }
+    grid->InsertNextCell(surface.order() == 2 ? VTK_QUADRATIC_TRIANGLE : VTK_TRIANGLE,
+                         surface.triangles.rows(), nodes.data());
+  }
+  AddCellFields(fields, grid);
   return grid;
 }
 

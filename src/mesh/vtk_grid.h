@@ -15,4 +15,8 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
                                                const std::vector<PointField>& fields = {},
                                                const std::vector<CellField>& cell_fields = {});
 
+// The surface's triangles; nodes that none of them uses are left out.
+vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const Surface& surface, const Eigen::Matrix3Xd& x,
+                                               const std::vector<CellField>& fields);
+
 }  // namespace softforce::mesh

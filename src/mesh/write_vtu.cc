@@ -36,6 +36,12 @@ void WriteVtu(const std::filesystem::path& path, const TetMesh& mesh,
   WriteWith(*writer.Get(), path, ToVtkGrid(mesh, fields, cell_fields));
 }
 
+void WriteSurfaceVtu(const std::filesystem::path& path, const Surface& surface,
+                     const Eigen::Matrix3Xd& x, const std::vector<CellField>& fields) {
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  WriteWith(*writer.Get(), path, ToVtkGrid(surface, x, fields));
+}
+
 void WriteLegacyVtk(const std::filesystem::path& path, const TetMesh& mesh) {
   vtkNew<vtkUnstructuredGridWriter> writer;
   writer->SetFileTypeToBinary();  // its text has fewer digits than a double

@@ -7,9 +7,14 @@ namespace {
 
 using base::Dimension;
 
+// The points themselves may not be measured yet.
+std::filesystem::path PointsFile(const YamlValue& value, SceneFiles files) {
+  return files == SceneFiles::kToDesign ? value.Path() : FileOf(value, files);
+}
+
 Measured ReadKeys(YamlMap& map, SceneFiles files) {
   Measured measured;
-  measured.file = FileOf(map.Required("file"), files);
+  measured.file = PointsFile(map.Required("file"), files);
   if (const auto unit = map.Optional("unit")) {
     measured.metres_per_unit = base::UnitInSi(unit->Text(), Dimension::kLength, unit->where());
   }
@@ -42,7 +47,7 @@ Measured ReadKeys(YamlMap& map, SceneFiles files) {
 Measured ReadMeasured(const YamlValue& value, SceneFiles files) {
   if (value.IsMap()) return value.ReadMap([&](YamlMap& map) { return ReadKeys(map, files); });
   Measured measured;
-  measured.file = FileOf(value, files);
+  measured.file = PointsFile(value, files);
   return measured;
 }
 

@@ -50,6 +50,23 @@ TEST(WriteVtu, GivesTheSameBytesForTheSameMesh) {
   EXPECT_EQ(ReadText(folder / "one.vtu"), ReadText(folder / "other.vtu"));
 }
 
+TEST(WriteSurfaceVtu, HasTheTrianglesAndTheirValuesOnly) {
+  const TetMesh box = MakeTwoRegionBox(2);
+  const Surface surface = ExtractSurface(box);
+  const auto path = FreshFolder() / "surface.vtu";
+
+  WriteSurfaceVtu(path, surface, box.nodes,
+                  {{"error_mm", Eigen::VectorXd::Ones(surface.num_triangles())}});
+
+  const std::string text = ReadText(path);
+  EXPECT_THAT(text, ::testing::HasSubstr("Name=\"error_mm\""));
+  EXPECT_THAT(text, ::testing::HasSubstr("NumberOfCells=\"" +
+                                         std::to_string(surface.num_triangles()) + "\""));
+  // A closed surface of 6-node triangles: Euler's formula gives 2 T + 2 nodes.
+  EXPECT_THAT(text, ::testing::HasSubstr("NumberOfPoints=\"" +
+                                         std::to_string(2 * surface.num_triangles() + 2) + "\""));
+}
+
 TEST(WriteVtu, RefusesAFolderThatDoesNotExist) {
   const auto path = FreshFolder() / "none" / "box.vtu";
   EXPECT_THAT(

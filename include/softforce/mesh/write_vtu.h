@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "softforce/mesh/surface.h"
 #include "softforce/mesh/tet_mesh.h"
 
 namespace softforce::mesh {
@@ -15,7 +16,7 @@ struct PointField {
   Eigen::Matrix3Xd values;  // 3×N
 };
 
-// A number of every cell, for colours.
+// A number of every cell, for colours; NaN where there is none.
 struct CellField {
   std::string name;
   Eigen::VectorXd values;  // E
@@ -28,5 +29,9 @@ struct CellField {
 void WriteVtu(const std::filesystem::path& path, const TetMesh& mesh,
               const std::vector<PointField>& fields = {},
               const std::vector<CellField>& cell_fields = {});
+
+// The same of the surface alone, with a number for each triangle (nodes at x, 3×N, m).
+void WriteSurfaceVtu(const std::filesystem::path& path, const Surface& surface,
+                     const Eigen::Matrix3Xd& x, const std::vector<CellField>& fields);
 
 }  // namespace softforce::mesh

@@ -173,6 +173,7 @@ enum class SceneFiles {
   kNone,        // to judge a mesh before anything is recorded; the actuation table is left empty
   kToRegister,  // all but where motion capture's frame is, which is to be found
   kToSimulate,  // all but the recording, and those that the section "simulation" names
+  kToDesign,    // all but the recording, which may not be made yet
 };
 
 // Reads and checks a scene and its actuation table. Throws InputError naming file, key and line on
