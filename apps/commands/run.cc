@@ -26,6 +26,7 @@ struct RunArguments {
   std::string draw = "all";
   LiveArguments live;
   bool no_overlay = false;
+  bool no_report = false;
   pipeline::RunOptions options;
 };
 
@@ -89,6 +90,7 @@ int Run(RunArguments* arguments) {
   options.time_offsets_s = ParseTimeOffsets(arguments->live);
   options.out = arguments->out;
   options.overlay = !arguments->no_overlay;
+  options.report = !arguments->no_report;
   options.layers = pipeline::ParseOverlayLayers(arguments->draw, "--draw");
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
@@ -161,6 +163,7 @@ Command AddRun(CLI::App* program) {
                       pipeline::OverlayLayerNames() + "; with a minus sign: all but these")
       ->capture_default_str();
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
+  app->add_flag("--no-report", arguments->no_report, "Do not write report.html");
   app->add_flag("--vtu", arguments->options.vtu, "Write a ParaView series (results.pvd)");
   AddLiveOptions(app, &arguments->live);
   return {app, [arguments] { return Run(arguments.get()); }};

@@ -35,6 +35,11 @@ missing_packages() {
       sed -n 's/ installed$//p' | LC_ALL=C sort -u)
 }
 
+# npm comes with other packages of Node.js, too, beside which Debian's npm cannot be installed.
+missing_commands() {
+  command -v npm >/dev/null || printf '%s\n' nodejs npm
+}
+
 is_debian_12() {
   [[ -r /etc/os-release ]] &&
     (. /etc/os-release && [[ ${ID:-} == debian && ${VERSION_ID:-} == 12 ]])
@@ -54,12 +59,12 @@ install_packages() {
   if ! is_debian_12; then
     if [[ ! -d build ]]; then
       say "not Debian 12: these packages must be there, under whatever name:"
-      listed_packages | paste -sd ' ' | fold -s -w 96
+      { listed_packages; printf '%s\n' nodejs npm; } | paste -sd ' ' | fold -s -w 96
     fi
     return
   fi
   local missing=()
-  mapfile -t missing < <(missing_packages)
+  mapfile -t missing < <(missing_packages; missing_commands)
   if [[ ${#missing[@]} == 0 ]]; then return; fi
   if [[ $(id -u) != 0 ]] && ! command -v sudo >/dev/null; then
     fail "packages are missing and there is no sudo. As root: apt-get install ${missing[*]}"

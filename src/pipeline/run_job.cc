@@ -9,6 +9,7 @@
 
 #include "pipeline/error_index.h"
 #include "pipeline/refusals.h"
+#include "pipeline/run_page.h"
 #include "pipeline/source_watch.h"
 #include "pipeline/summary_file.h"
 
@@ -70,11 +71,18 @@ void RunJob::ProcessFrames(RunOutputs* outputs) {
   if (options_.show_progress) progress.Finish();
 }
 
-void RunJob::WriteSummaryFile() {
-  RunFacts facts{scene_,   options_,          tally_,
-                 world_,   correction_,       standing_,
-                 index_w_, source_->Inputs(), source_->RigEvents()};
+void RunJob::WriteSummaries(const RunOutputs& outputs) {
+  const RunFacts facts{scene_,
+                       options_,
+                       tally_,
+                       world_,
+                       correction_,
+                       standing_,
+                       index_w_,
+                       DescribeInputs(source_->Inputs()),
+                       source_->RigEvents()};
   WriteSummary(facts, options_.out / "summary.json");
+  if (outputs.log()) WriteRunPage(facts, *outputs.log(), options_.out / "report.html");
 }
 
 void RunJob::LogSetUp() const {
@@ -109,7 +117,7 @@ RunReport RunJob::Finish() {
   report.has_pictures = !source_->rig().cameras.empty();
   tally_.Judge(source_->Messages(), source_->ShortOf());
   outputs.Commit();
-  WriteSummaryFile();
+  WriteSummaries(outputs);
   return report;
 }
 

@@ -27,7 +27,7 @@ class RunJob {
   std::string Note() const;
   void ProcessFrames(RunOutputs* outputs);
   void LogSetUp() const;
-  void WriteSummaryFile();
+  void WriteSummaries(const RunOutputs& outputs);
 
   const RunOptions& options_;
   const scene::Scene scene_;

@@ -20,6 +20,7 @@ RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, con
                      options.layers);
   }
   if (options.vtu) series_.emplace(options.out);
+  if (options.report) log_.emplace(world);
 }
 
 std::vector<Stage> RunOutputs::Stages() {
@@ -42,6 +43,9 @@ std::vector<Stage> RunOutputs::Stages() {
     stages.push_back({"vtu", Order::kInOrder, [this](FrameInWork* frame) {
                         series_->Add(frame->set.frame, frame->set.time_s, world_.mesh(), frame->u);
                       }});
+  }
+  if (log_) {
+    stages.push_back({"page", Order::kInOrder, [this](FrameInWork* frame) { log_->Add(*frame); }});
   }
   return stages;
 }

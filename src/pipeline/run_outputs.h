@@ -5,6 +5,7 @@
 
 #include "pipeline/frame_pipeline.h"
 #include "pipeline/overlay_video.h"
+#include "pipeline/report_log.h"
 #include "pipeline/result_tables.h"
 #include "pipeline/vtu_series.h"
 #include "softforce/pipeline/run.h"
@@ -23,12 +24,15 @@ class RunOutputs {
 
   void Commit();
 
+  const std::optional<ReportLog>& log() const { return log_; }  // nothing: no report was asked for
+
  private:
   const World& world_;
   ResultTables tables_;
   std::optional<OverlayVideo> overlay_;
   double largest_displacement_ = 0;  // m, so far
   std::optional<VtuSeries> series_;
+  std::optional<ReportLog> log_;
 };
 
 }  // namespace softforce::pipeline

@@ -8,7 +8,6 @@
 
 #include "pipeline/frame_pipeline.h"
 #include "pipeline/result_tables.h"
-#include "softforce/base/sha256.h"
 #include "softforce/base/version.h"
 
 namespace softforce::pipeline {
@@ -62,14 +61,6 @@ Json Live(const vision::SourceReport& source) {
                                       {"missed", camera.missed},     {"reopened", camera.reopened}};
   }
   return live;
-}
-
-// Of a camera's folder in a recording, its table of times stands for all.
-Json Input(const std::filesystem::path& input) {
-  const bool is_folder = std::filesystem::is_directory(input);
-  const std::filesystem::path file = is_folder ? input / "times.csv" : input;
-  const std::string name = input.filename().string() + (is_folder ? "/times.csv" : "");
-  return {{"file", name}, {"sha256", base::Sha256OfFile(file)}};
 }
 
 void AddStages(const std::vector<StageTimes>& stages, Json* json) {
@@ -152,8 +143,8 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   if (std::isfinite(options.tracker.estimator.force_walk)) {
     json["options"]["force_walk_N"] = options.tracker.estimator.force_walk;
   }
-  for (const std::filesystem::path& input : facts.inputs) {
-    json["inputs"].push_back(Input(input));
+  for (const InputFile& input : facts.inputs) {
+    json["inputs"].push_back({{"file", input.name}, {"sha256", input.sha256}});
   }
   PendingTable out(file, "");
   out.stream() << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "pipeline/input_files.h"
 #include "pipeline/mesh_correction.h"
 #include "pipeline/rig_watch.h"
 #include "pipeline/run_tally.h"
@@ -18,7 +19,7 @@ struct RunFacts {
   const std::optional<MeshCorrection>& correction;
   const Standing& standing;  // of the rig at the beginning
   double index_w = NAN;      // I_w = ‖W_ef⁺‖₁ of the body at rest, N/m
-  std::vector<std::filesystem::path> inputs;
+  std::vector<InputFile> inputs;
   std::vector<RigEvent> rig_events;
 };
 

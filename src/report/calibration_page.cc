@@ -5,7 +5,7 @@
 
 #include "report/figures.h"
 #include "report/format.h"
-#include "report/page_style.h"
+#include "report/page.h"
 #include "report/page_tables.h"
 #include "report/plots.h"
 #include "report/svg.h"
@@ -15,26 +15,11 @@ namespace {
 
 using calibration::Calibration;
 
-std::string Figure(const std::string& svg, const std::string& caption) {
-  return "<figure>" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
-}
-
-std::string Folded(const std::string& summary, const std::string& content) {
-  return "<details class=\"box\"><summary>" + Escape(summary) + "</summary>" + content +
-         "</details>\n";
-}
-
-std::string Card(const std::string& figure, const std::string& meaning) {
-  return "<div class=\"card\"><b>" + Escape(figure) + "</b><span>" + Escape(meaning) +
-         "</span></div>\n";
-}
-
 // The colours of the cameras.
 std::string CameraKey(const CalibrationRecord& record) {
   std::string key;
   for (size_t c = 0; c < record.input.cameras.size(); ++c) {
-    key += fmt::format("<span class=\"key {}\"></span>{}", CameraClass(static_cast<int>(c)),
-                       Escape(record.input.cameras[c].name));
+    key += Key(HueClass(static_cast<int>(c)), record.input.cameras[c].name);
   }
   return key;
 }
@@ -192,12 +177,7 @@ const char* const kDefinitions =
 }  // namespace
 
 std::string CalibrationPage(const CalibrationRecord& record) {
-  std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Camera calibration</title>\n<style>" +
-      std::string(kPageStyle) + "</style>\n</head>\n<body>\n<main>\n";
-  page += Head(record) + Cards(record) + AdviceBox(record.result);
+  std::string page = Head(record) + Cards(record) + AdviceBox(record.result);
   if (!record.result.cameras.empty()) {
     page += "<h2>Cameras</h2>\n<div class=\"box\">" + CamerasTable(record) + "</div>\n";
   }
@@ -207,7 +187,7 @@ std::string CalibrationPage(const CalibrationRecord& record) {
   }
   page += HoldOutSection(record) + BoardSection(record) + LensSection(record) +
           LeftOutSection(record) + kDefinitions;
-  return page + "</main>\n</body>\n</html>\n";
+  return Page("Camera calibration", page);
 }
 
 }  // namespace softforce::report

@@ -87,7 +87,7 @@ std::string CoveragePlot(const CalibrationRecord& record, int camera) {
           Stroke(frame.X(pixel.x()), frame.Y(pixel.y()), frame.X(pixel.x()), frame.Y(pixel.y()));
     }
   }
-  frame.svg.Path(dots, "dots " + CameraClass(camera));
+  frame.svg.Path(dots, "dots " + HueClass(camera));
   frame.svg.Rect(0, 0, kWidth, frame.height, "frame");
   frame.svg.Rect(0, frame.key_y() - 9, 14, 10, "empty");
   frame.svg.Text(20, frame.key_y(), "no point here; darker blue: more points");
@@ -111,7 +111,7 @@ std::string ResidualPlot(const CalibrationRecord& record, int camera) {
       strokes += Stroke(x, y, x + magnified * point.error.x(), y + magnified * point.error.y());
     }
   }
-  frame.svg.Path(small, "arrows " + CameraClass(camera));
+  frame.svg.Path(small, "arrows " + HueClass(camera));
   frame.svg.Path(large, "arrows large");
   frame.svg.Path(crosses, "arrows outlier");
   frame.svg.Rect(0, 0, kWidth, frame.height, "frame");

@@ -6,6 +6,7 @@
 
 #include "report/figures.h"
 #include "report/format.h"
+#include "report/table.h"
 
 namespace softforce::report {
 namespace {
@@ -16,30 +17,6 @@ using calibration::PointResidual;
 using calibration::ViewFit;
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-
-// A table whose columns after the first `words` are numbers.
-class Table {
- public:
-  Table(const std::vector<std::string>& heads, size_t words) : words_(words) {
-    text_ = "<table>\n" + Row(heads, "th");
-  }
-
-  void Add(const std::vector<std::string>& cells) { text_ += Row(cells, "td"); }
-  std::string str() const { return text_ + "</table>\n"; }
-
- private:
-  std::string Row(const std::vector<std::string>& cells, const char* tag) const {
-    std::string row = "<tr>";
-    for (size_t i = 0; i < cells.size(); ++i) {
-      row += fmt::format("<{}{}>{}</{}>", tag, i < words_ ? "" : " class=\"number\"",
-                         Escape(cells[i]), tag);
-    }
-    return row + "</tr>\n";
-  }
-
-  std::string text_;
-  size_t words_;
-};
 
 }  // namespace
 

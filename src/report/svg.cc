@@ -93,6 +93,6 @@ std::string HeatColour(double share) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
 }
 
-std::string CameraClass(int camera) { return fmt::format("c{}", camera % 6); }
+std::string HueClass(int n) { return fmt::format("c{}", n % 6); }
 
 }  // namespace softforce::report

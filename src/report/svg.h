@@ -38,7 +38,7 @@ double RoundStep(double range, int steps);
 // A colour from dark blue over green to yellow (viridis) for 0 … 1, "#rrggbb".
 std::string HeatColour(double share);
 
-// The class of a camera's marks: "c0" … "c5", then again.
-std::string CameraClass(int camera);
+// The class of the nth colour, as of a camera or a force: "c0" … "c5", then again.
+std::string HueClass(int n);
 
 }  // namespace softforce::report

@@ -71,7 +71,7 @@ std::string TopView(const CalibrationRecord& record) {
   Svg svg(width, height, "Cameras and boards from above");
   for (const Outline& board : boards) svg.Path(Polygon(board, scale, x0, z0), "board");
   for (size_t c = 0; c < cameras.size(); ++c) {
-    svg.Path(Polygon(cameras[c], scale, x0, z0), "camera " + CameraClass(static_cast<int>(c)),
+    svg.Path(Polygon(cameras[c], scale, x0, z0), "camera " + HueClass(static_cast<int>(c)),
              result.rig.cameras[c].name);
   }
   const double bar = RoundStep(0.25 * width / scale, 1);  // m

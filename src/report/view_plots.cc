@@ -75,7 +75,7 @@ std::string PictureBars(const CalibrationRecord& record) {
       if (!std::isfinite(picture.rms_px)) continue;
       const bool out = picture.left_out || !views[v].used;
       bars.Bar(v, picture.camera, picture.rms_px,
-               (out ? "out " : "bar ") + CameraClass(picture.camera),
+               (out ? "out " : "bar ") + HueClass(picture.camera),
                fmt::format("{}, {}: {} px, {}{}{}", views[v].name,
                            record.input.cameras[picture.camera].name, Short(picture.rms_px),
                            Count(picture.points, "point"),
@@ -84,7 +84,7 @@ std::string PictureBars(const CalibrationRecord& record) {
     }
   }
   for (size_t c = 0; c < record.result.cameras.size(); ++c) {
-    bars.Level(record.result.cameras[c].rms_px, "level " + CameraClass(static_cast<int>(c)));
+    bars.Level(record.result.cameras[c].rms_px, "level " + HueClass(static_cast<int>(c)));
   }
   return bars.str();
 }
@@ -134,7 +134,7 @@ std::string PosePlot(const CalibrationRecord& record) {
     for (const PictureFit& picture : view.pictures) {
       if (!std::isfinite(picture.distance) || !std::isfinite(picture.tilt)) continue;
       chart.svg.Circle(chart.X(picture.distance), chart.Y(kDegrees * picture.tilt), 4,
-                       "spot " + CameraClass(picture.camera),
+                       "spot " + HueClass(picture.camera),
                        fmt::format("{}, {}: {:.3f} m, {:.0f}°", view.name,
                                    record.input.cameras[picture.camera].name, picture.distance,
                                    kDegrees * picture.tilt));

@@ -35,6 +35,7 @@ struct RunOptions {
   int watch_rig = 1;    // look for a bump of the rig in every so many frames; 0: never
   bool overlay = true;  // write overlay.mp4
   bool vtu = false;     // write a ParaView series
+  bool report = true;   // write report.html
   bool show_progress = true;
   int overlay_width = 1920;  // px, of all cameras side by side
   OverlayLayers layers;      // that the overlay shows
@@ -70,7 +71,8 @@ struct RunReport {
 
 // The main job: scene.yaml in, forces out. Reads the recording that the scene names, its live
 // cameras or its points of motion capture, finds where the rig stands, estimates the forces in
-// every frame, and writes forces.csv, markers.csv, actuation.csv, summary.json and overlay.mp4.
+// every frame, and writes forces.csv, markers.csv, actuation.csv, summary.json, overlay.mp4 and
+// report.html.
 // Files show up under their names only when they are complete. Stages run beside each other on
 // threads; the tables do not depend on how many. Throws InputError for input that cannot be used,
 // before anything is written where possible.
