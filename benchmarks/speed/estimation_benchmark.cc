@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "softforce/estimation/force_estimator.h"
-#include "speed/measured_sheet.h"
+#include "speed/measured_robot.h"
 
 namespace softforce::benchmarks {
 namespace {
@@ -144,20 +144,10 @@ void ForcesAndMarkers(benchmark::State& state) {
                 c.yardstick);
 }
 
-// The robot of meshes/: four legs, two cables shortened by 8 mm, a force at its tip of up to 0.859
-// N along z, nine markers.
-void Robot(benchmark::State& state) {
-  fem::Body body;
-  body.mesh = mesh::ReadMesh(SOFTFORCE_SOURCE_DIR "/meshes/robot.msh", 1e-3);
-  if (state.range(0) == 2) body.mesh = mesh::RaiseOrder(body.mesh);
-  body.materials.assign(body.mesh.region_names.size(),
-                        {fem::MaterialModel::kNeoHookean, 220e3, 0.45});
-  for (int n = 0; n < body.mesh.num_nodes(); ++n) {
-    if (body.mesh.nodes(2, n) < 1e-6) body.fixed_nodes.push_back(n);
-  }
-  const double out = 44.067e-3, up = 54.272e-3;  // m
-  body.cables.push_back({"x", {testing::PointOf(body, {out, 0, up})}, {5e-3, 0, 6e-3}});
-  body.cables.push_back({"y", {testing::PointOf(body, {0, out, up})}, {0, 5e-3, 6e-3}});
+// The robot with a force at its tip of up to 0.859 N along z, nine markers.
+void RobotFrame(benchmark::State& state) {
+  const Robot robot(static_cast<int>(state.range(0)));
+  const fem::Body& body = robot.body;
   std::vector<mesh::NodalWeights> points;
   for (const Eigen::Vector3d& place :
        {Eigen::Vector3d(7.6, 7.6, 110), Eigen::Vector3d(-7.6, 7.6, 110),
@@ -169,33 +159,23 @@ void Robot(benchmark::State& state) {
   }
   const std::vector<ForceSite> sites{
       {"tip", testing::PointOf(body, {0, 0, 0.096}), -Eigen::Vector3d::UnitZ()}};
-  const fem::CableCommand shortened{fem::CableInput::kDisplacement, 8e-3};
-  const fem::Actuation actuation{{shortened, shortened}, {}};
-
-  Tangent tangent(body);
-  double yardstick = std::numeric_limits<double>::infinity();
-  for (int repetition = 0; repetition < 8; ++repetition) {
-    const double begin = Seconds(CLOCK_PROCESS_CPUTIME_ID);
-    tangent.cholesky.Factorise(tangent.assembler.matrix());
-    yardstick = std::min(yardstick, Seconds(CLOCK_PROCESS_CPUTIME_ID) - begin);
-  }
   fem::StaticSolver solver(body, "robot");
   fem::Equilibrium truth = solver.AtRest();
   MeasureFrames(
-      state, body, sites, actuation,
+      state, body, sites, robot.actuation,
       Sweep(body, points,
             [&](double share) {
               fem::LoadCase load = testing::LoadAt(body, sites[0].at, {0, 0, -0.859 * share});
-              load.actuation = actuation;
+              load.actuation = robot.actuation;
               solver.Solve(load, &truth);
               return truth;
             }),
-      yardstick);
+      robot.yardstick);
 }
 
 // Whole sweeps, so that every part of the range counts alike.
 BENCHMARK(EstimatedFrame)->Apply(EverySize)->Iterations(2 * kSteps);
-BENCHMARK(Robot)
+BENCHMARK(RobotFrame)
     ->ArgName("order")
     ->Arg(1)
     ->Arg(2)

@@ -66,14 +66,14 @@ ForceFaces::ForceFaces(const mesh::Surface& surface, const Eigen::Matrix3Xd& X, 
                        double crease)
     : surface_(surface),
       X_(X),
-      patch_(patch),
+      patches_(surface, X, patch),
       walk_(surface, X, mesh::SmoothFaces(surface, X, crease)) {}
 
 PlacedPatch ForceFaces::Place(const mesh::SurfacePoint& at,
                               const LocationCandidate& candidate) const {
   PlacedPatch placed;
   placed.tangents = walk_.Tangents(at.triangle);
-  placed.patch = mesh::MovingPatchWeights(surface_, X_, at, patch_, placed.tangents);
+  placed.patch = patches_.At(at, placed.tangents);
   switch (candidate.direction) {
     case ForceDirection::kFree:
       placed.directions = Eigen::Matrix3d::Identity();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "softforce/estimation/location_estimator.h"
+#include "softforce/mesh/patches.h"
 #include "softforce/mesh/surface_walk.h"
 
 namespace softforce::estimation {
@@ -28,7 +29,7 @@ class ForceFaces {
  private:
   const mesh::Surface& surface_;
   Eigen::Matrix3Xd X_;
-  double patch_;
+  mesh::Patches patches_;
   mesh::SurfaceWalk walk_;
 };
 

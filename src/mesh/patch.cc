@@ -10,7 +10,7 @@
 
 #include "mesh/closest_triangle.h"
 #include "mesh/triangle_shapes.h"
-#include "softforce/mesh/surface.h"
+#include "softforce/mesh/patches.h"
 
 namespace softforce::mesh {
 namespace {
@@ -31,36 +31,25 @@ constexpr std::array<GaussPoint, kRadii / 2> kGauss{{{0.1834346424956498, 0.3626
                                                      {0.7966664774136267, 0.2223810344533745},
                                                      {0.9602898564975363, 0.1012285362903763}}};
 
-// The sheet of surface on which the disc lies: triangles within `reach` of its centre that do not
-// face backwards and hang together with the centre's triangle. A thin body's other side and parts
-// that merely come close are not among them.
-std::vector<int> SheetAround(const Surface& surface, const Eigen::Matrix3Xd& X, int centre_triangle,
-                             const Eigen::Vector3d& centre, const Eigen::Vector3d& normal,
-                             double reach) {
-  std::vector<int> waiting;
-  for (int t = 0; t < surface.num_triangles(); ++t) {
-    if (t == centre_triangle) continue;
-    if (SquaredDistanceToBox(surface, X, t, centre) > reach * reach) continue;
-    const SurfacePoint middle{t, Eigen::Vector3d::Constant(1.0 / 3)};
-    if (Normal(surface, X, middle).dot(normal) > 0) waiting.push_back(t);
-  }
+struct DiscPoint {
+  double share;
+  Eigen::Vector2d at;  // of the unit disc
+};
 
-  std::vector<int> sheet{centre_triangle};
-  std::set<int> sheet_nodes;
-  const auto corners = [&](int t) { return surface.triangles.col(t).head<3>(); };
-  for (std::size_t i = 0; i < sheet.size(); ++i) {
-    for (const int node : corners(sheet[i])) sheet_nodes.insert(node);
-    const auto touches = [&](int t) {
-      const auto nodes = corners(t);
-      return std::any_of(nodes.begin(), nodes.end(),
-                         [&](int node) { return sheet_nodes.count(node) > 0; });
-    };
-    const auto joined =
-        std::stable_partition(waiting.begin(), waiting.end(), [&](int t) { return !touches(t); });
-    sheet.insert(sheet.end(), joined, waiting.end());
-    waiting.erase(joined, waiting.end());
-  }
-  return sheet;
+const std::vector<DiscPoint>& DiscPoints() {
+  static const std::vector<DiscPoint> points = [] {
+    std::vector<DiscPoint> made;
+    for (int ring = 0; ring < kRadii; ++ring) {
+      const GaussPoint& gauss = kGauss[ring / 2];
+      const double r = std::sqrt((1 + (ring % 2 ? -gauss.at : gauss.at)) / 2);
+      for (int i = 0; i < kAngles; ++i) {
+        const double angle = 2 * kPi * (i + 0.5 * (ring % 2)) / kAngles;
+        made.push_back({gauss.weight / 2 / kAngles, {r * std::cos(angle), r * std::sin(angle)}});
+      }
+    }
+    return made;
+  }();
+  return points;
 }
 
 // The sheet, prepared for many points: its nodes counted from 0, its triangles with what gives
@@ -136,14 +125,19 @@ class Sheet {
   }
 
   // The triangle in which p lies, with its coordinates there; none can be closer.
-  const Facet* Containing(const Eigen::Vector3d& p, Eigen::Vector3d* L) const {
+  const Facet* Containing(const Eigen::Vector3d& p, Eigen::Vector3d* L) {
     constexpr double kInPlane = 1e-12;  // m
-    for (const Facet& facet : facets_) {
+    const std::size_t n = facets_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t f = (last_ + i) % n;
+      const Facet& facet = facets_[f];
       const Eigen::Vector3d from_corner = p - facet.corner;
       if (std::abs(facet.normal.dot(from_corner)) > kInPlane) continue;
       const Eigen::Vector2d L12 = facet.to_L * from_corner;
       *L = {1 - L12.sum(), L12(0), L12(1)};
-      if (L->minCoeff() >= 0) return &facet;
+      if (L->minCoeff() < 0) continue;
+      last_ = f;
+      return &facet;
     }
     return nullptr;
   }
@@ -153,38 +147,64 @@ class Sheet {
   std::vector<int> triangles_;
   std::map<int, int> number_;  // of each node
   std::vector<Facet> facets_;
-  Eigen::MatrixXd sum_;  // per node: weight, slopes
+  std::size_t last_ = 0;  // facet in which a place was found: the next one is near it
+  Eigen::MatrixXd sum_;   // per node: weight, slopes
 };
 
 }  // namespace
 
+Patches::Patches(const Surface& surface, const Eigen::Matrix3Xd& X, double diameter)
+    : surface_(surface), X_(X), diameter_(diameter), at_node_(X.cols()) {
+  assert(diameter >= 0);
+  for (int t = 0; t < surface_.num_triangles(); ++t) {
+    for (int i = 0; i < 3; ++i) at_node_[surface_.triangles(i, t)].push_back(t);
+  }
+}
+
+// A point of the disc is at most one radius from the surface, hence what is closest to it is at
+// most two radii, which is a diameter, from the centre.
+std::vector<int> Patches::SheetAround(const SurfacePoint& centre) const {
+  const Eigen::Vector3d middle = Position(surface_, X_, centre);
+  const Eigen::Vector3d normal = Normal(surface_, X_, centre);
+  std::vector<int> sheet{centre.triangle};
+  std::set<int> known{centre.triangle};
+  for (std::size_t i = 0; i < sheet.size(); ++i) {
+    const std::size_t joining = sheet.size();
+    for (const int node : surface_.triangles.col(sheet[i]).head<3>()) {
+      for (const int t : at_node_[node]) {
+        if (!known.insert(t).second) continue;
+        if (SquaredDistanceToBox(surface_, X_, t, middle) > diameter_ * diameter_) continue;
+        const SurfacePoint there{t, Eigen::Vector3d::Constant(1.0 / 3)};
+        if (Normal(surface_, X_, there).dot(normal) > 0) sheet.push_back(t);
+      }
+    }
+    std::sort(sheet.begin() + static_cast<std::ptrdiff_t>(joining), sheet.end());
+  }
+  return sheet;
+}
+
+MovingPatch Patches::At(const SurfacePoint& centre, const Eigen::Matrix3Xd& directions) const {
+  if (diameter_ == 0) {
+    return {ShapeFunctions(surface_, centre),
+            ShapeFunctionSlopes(surface_, X_, centre, directions)};
+  }
+  const double radius = diameter_ / 2;
+  const Eigen::Vector3d middle = Position(surface_, X_, centre);
+  const Eigen::Vector3d normal = Normal(surface_, X_, centre);
+  Eigen::Matrix<double, 3, 2> across;
+  across.col(0) = normal.unitOrthogonal();
+  across.col(1) = normal.cross(across.col(0));
+  Sheet disc(surface_, X_, SheetAround(centre), directions);
+  for (const DiscPoint& point : DiscPoints()) {
+    disc.Add(point.share, middle + radius * (across * point.at));
+  }
+  return disc.Sum();
+}
+
 MovingPatch MovingPatchWeights(const Surface& surface, const Eigen::Matrix3Xd& X,
                                const SurfacePoint& centre, double diameter,
                                const Eigen::Matrix3Xd& directions) {
-  assert(diameter >= 0);
-  if (diameter == 0) {
-    return {ShapeFunctions(surface, centre), ShapeFunctionSlopes(surface, X, centre, directions)};
-  }
-  const double radius = diameter / 2;
-  const Eigen::Vector3d middle = Position(surface, X, centre);
-  const Eigen::Vector3d normal = Normal(surface, X, centre);
-  const Eigen::Vector3d u = normal.unitOrthogonal();
-  const Eigen::Vector3d v = normal.cross(u);
-  // A point of the disc is at most one radius from the surface, hence what is closest to it is at
-  // most two radii from the centre.
-  const auto sheet = SheetAround(surface, X, centre.triangle, middle, normal, 2 * radius);
-
-  Sheet disc(surface, X, sheet, directions);
-  for (int ring = 0; ring < kRadii; ++ring) {
-    const GaussPoint& gauss = kGauss[ring / 2];
-    const double r = radius * std::sqrt((1 + (ring % 2 ? -gauss.at : gauss.at)) / 2);
-    for (int i = 0; i < kAngles; ++i) {
-      const double angle = 2 * kPi * (i + 0.5 * (ring % 2)) / kAngles;
-      disc.Add(gauss.weight / 2 / kAngles,
-               middle + r * (std::cos(angle) * u + std::sin(angle) * v));
-    }
-  }
-  return disc.Sum();
+  return Patches(surface, X, diameter).At(centre, directions);
 }
 
 NodalWeights PatchWeights(const Surface& surface, const Eigen::Matrix3Xd& X,

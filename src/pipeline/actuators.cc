@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "pipeline/group_triangles.h"
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/interior_point.h"
+#include "softforce/mesh/surface_groups.h"
 #include "softforce/pipeline/world.h"
 
 namespace softforce::pipeline {
@@ -50,7 +50,7 @@ std::vector<fem::Chamber> Chambers(const scene::Scene& scene, const mesh::TetMes
   for (const scene::Actuator& actuator : scene.actuators) {
     if (actuator.type != scene::ActuatorType::kPressure) continue;
     const std::string where = Where(scene, actuator) + ": group";
-    const std::vector<int> triangles = GroupTriangles(actuator.group, mesh, surface, where);
+    const std::vector<int> triangles = mesh::GroupTriangles(actuator.group, mesh, surface, where);
     if (triangles.empty()) {
       throw base::InputError(
           where,

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "pipeline/design_task.h"
-#include "pipeline/group_triangles.h"
 #include "softforce/base/input_error.h"
 #include "softforce/design/candidate_spacing.h"
 #include "softforce/estimation/location_estimator.h"
@@ -93,14 +92,14 @@ std::vector<int> TrianglesOf(const World& world, const std::string& what,
                              const std::string& option) {
   const bool is_group = world.mesh().surface_groups.count(what) > 0;
   if (is_group || !IsSelector(what)) {
-    return GroupTriangles(what, world.mesh(), world.surface, option);
+    return mesh::GroupTriangles(what, world.mesh(), world.surface, option);
   }
   mesh::TetMesh named = world.mesh();
   named.surface_groups.clear();
   named = mesh::WithSurfaceGroups(std::move(named), {"it=" + what}, option);
   std::set<int> triangles;
   for (const auto& [name, corners] : named.surface_groups) {
-    for (const int t : GroupTriangles(name, named, world.surface, option)) triangles.insert(t);
+    for (const int t : mesh::GroupTriangles(name, named, world.surface, option)) triangles.insert(t);
   }
   return {triangles.begin(), triangles.end()};
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "pipeline/candidate_count.h"
 #include "pipeline/error_index.h"
 #include "pipeline/refusals.h"
 #include "pipeline/run_page.h"
@@ -92,6 +93,11 @@ void RunJob::LogSetUp() const {
   log.info("{}: {} cells of order {}, {} nodes; {} markers, {} forces, {} cables", scene_.name,
            world_.mesh().num_elements(), world_.mesh().order(), world_.mesh().num_nodes(),
            world_.markers.size(), world_.sites.size(), scene_.actuators.size());
+  if (!scene_.forces.known_locations) {
+    const CandidateCount count = CountCandidates(world_);
+    log.info("{}", count.Brief());
+    if (!count.enough()) log.warn("{}", count.Warning());
+  }
   if (!standing_.from_fiducials) return;
   const vision::RigPose& pose = *standing_.from_fiducials;
   log.info("the rig is placed by {} corners of fiducials, which fit to {:.3f} px", pose.num_points,
@@ -102,6 +108,10 @@ RunReport RunJob::Finish() {
   const auto start = std::chrono::steady_clock::now();
   PrepareFolder(options_.out);
   LogSetUp();
+  const CandidateCount count = CountCandidates(world_);
+  if (!scene_.forces.known_locations && !count.enough()) {
+    tally_.report.warnings.push_back(count.Warning());
+  }
   RunOutputs outputs(options_, scene_, world_, source_->rig());
 
   ProcessFrames(&outputs);

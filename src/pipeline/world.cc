@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "pipeline/actuators.h"
-#include "pipeline/group_triangles.h"
 #include "softforce/base/input_error.h"
 #include "softforce/mesh/read_mesh.h"
+#include "softforce/scene/fixed_nodes.h"
 
 namespace softforce::pipeline {
 namespace {
@@ -40,42 +39,6 @@ std::vector<fem::Material> MaterialsOf(const scene::Scene& scene, const mesh::Te
                                        fmt::join(names, "\", \"")));
   }
   return materials;
-}
-
-std::vector<int> FixedNodes(const scene::Scene& scene, const mesh::TetMesh& mesh,
-                            const mesh::Surface& surface) {
-  constexpr double kRounding = 1e-9;  // m; so that a box flush with a face includes it
-  std::set<int> fixed;
-  for (size_t i = 0; i < scene.fixed.size(); ++i) {
-    const scene::FixedRegion& region = scene.fixed[i];
-    const std::string where = fmt::format("{}: body: fixed: [{}]", scene.file.string(), i);
-    std::set<int> nodes;
-    if (!region.group.empty()) {
-      for (const int t : GroupTriangles(region.group, mesh, surface, where)) {
-        nodes.insert(surface.triangles.col(t).begin(), surface.triangles.col(t).end());
-      }
-    } else {
-      for (int node = 0; node < mesh.num_nodes(); ++node) {
-        const Eigen::Vector3d X = mesh.nodes.col(node);
-        if (((X - region.box_min).array() >= -kRounding).all() &&
-            ((region.box_max - X).array() >= -kRounding).all()) {
-          nodes.insert(node);
-        }
-      }
-    }
-    if (nodes.empty()) {
-      const Eigen::Vector3d low = 1000 * mesh.nodes.rowwise().minCoeff();
-      const Eigen::Vector3d high = 1000 * mesh.nodes.rowwise().maxCoeff();
-      throw base::InputError(where,
-                             fmt::format("holds no node of the mesh, which spans {:.4g} to {:.4g}, "
-                                         "{:.4g} to {:.4g}, {:.4g} to "
-                                         "{:.4g} mm",
-                                         low.x(), high.x(), low.y(), high.y(), low.z(), high.z()),
-                             "Check the box against the mesh, and the mesh's unit.");
-    }
-    fixed.insert(nodes.begin(), nodes.end());
-  }
-  return {fixed.begin(), fixed.end()};
 }
 
 Eigen::Matrix3Xd Directions(const scene::Candidate& candidate, const Eigen::Vector3d& normal) {
@@ -142,7 +105,7 @@ World BuildWorld(const scene::Scene& scene, mesh::TetMesh mesh) {
   body.mesh = std::move(mesh);
   world.surface = mesh::ExtractSurface(body.mesh);
   body.materials = MaterialsOf(scene, body.mesh);
-  body.fixed_nodes = FixedNodes(scene, body.mesh, world.surface);
+  body.fixed_nodes = scene::FixedNodes(scene, body.mesh, world.surface);
   body.cables = Cables(scene, body.mesh, world.surface);
   body.chambers = Chambers(scene, body.mesh, world.surface);
   body.gravity = scene.gravity;

@@ -64,7 +64,8 @@ Scene LoadScene(const std::filesystem::path& file, SceneFiles files) {
     const auto measured = root.Optional("measured");
     scene.markers = root.Required("markers").ReadMap(
         [&](YamlMap& map) { return ReadMarkers(map, measured.has_value()); });
-    scene.forces = root.Required("forces").ReadMap(ReadForces);
+    scene.forces =
+        root.Required("forces").ReadMap([&](YamlMap& map) { return ReadForces(map, scene); });
     ReadSight(root, measured, files, scene);
     RefuseSharedTags(scene, root.value());
     if (const auto simulation = root.Optional("simulation")) {

@@ -18,7 +18,8 @@ void ReadBody(const YamlValue& body, SceneFiles files,
 std::vector<Actuator> ReadActuators(const YamlValue& actuators);
 // `measured`: by motion capture, which does not need to know what they look like.
 Markers ReadMarkers(YamlMap& markers, bool measured);
-Forces ReadForces(YamlMap& forces);
+// `scene`: with its body, over which candidates may be spread.
+Forces ReadForces(YamlMap& forces, const Scene& scene);
 Cameras ReadCameras(YamlMap& cameras, SceneFiles files);
 Measured ReadMeasured(const YamlValue& measured, SceneFiles files);
 Simulation ReadSimulation(YamlMap& simulation, SceneFiles files, const Scene& scene);

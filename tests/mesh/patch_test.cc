@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "softforce/mesh/surface.h"
+#include "softforce/mesh/patches.h"
 #include "support/box_mesh.h"
 
 namespace softforce::mesh {
@@ -112,8 +112,7 @@ TEST_P(PatchOfOrder, SlopesAreTheDifferencesOfWeights) {
   const double h = 1e-5;  // m
   for (const double diameter : {0.0, kDiameter}) {
     const SurfacePoint centre = ClosestSurfacePoint(surface_, sheet_.nodes, at).at;
-    const MovingPatch moving =
-        MovingPatchWeights(surface_, sheet_.nodes, centre, diameter, directions);
+    const MovingPatch moving = Patches(surface_, sheet_.nodes, diameter).At(centre, directions);
     for (int k = 0; k < 2; ++k) {
       Eigen::VectorXd slope = Eigen::VectorXd::Zero(sheet_.num_nodes());
       const NodalWeights ahead = PatchAt(at + h * directions.col(k), diameter);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "softforce/mesh/surface.h"
 #include "softforce/mesh/tet_mesh.h"
 
 namespace softforce::mesh {
@@ -24,5 +25,10 @@ extern const char kSelectorHelp[];
 // naming `where` if a request cannot be read, selects nothing, or the mesh has that name already.
 TetMesh WithSurfaceGroups(TetMesh mesh, const std::vector<std::string>& requests,
                           const std::string& where);
+
+// The triangles of the surface, by index, that a named group of its mesh is made of. Throws
+// InputError naming `where` if the mesh has no such group.
+std::vector<int> GroupTriangles(const std::string& group, const TetMesh& mesh,
+                                const Surface& surface, const std::string& where);
 
 }  // namespace softforce::mesh

@@ -1,16 +1,15 @@
-#include "pipeline/group_triangles.h"
-
 #include <fmt/format.h>
 
 #include <array>
 #include <set>
 
 #include "softforce/base/input_error.h"
+#include "softforce/mesh/surface_groups.h"
 
-namespace softforce::pipeline {
+namespace softforce::mesh {
 namespace {
 
-std::string GroupNames(const mesh::TetMesh& mesh) {
+std::string GroupNames(const TetMesh& mesh) {
   std::vector<std::string> names;
   for (const auto& [name, triangles] : mesh.surface_groups) names.push_back(name);
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
@@ -18,8 +17,8 @@ std::string GroupNames(const mesh::TetMesh& mesh) {
 
 }  // namespace
 
-std::vector<int> GroupTriangles(const std::string& group, const mesh::TetMesh& mesh,
-                                const mesh::Surface& surface, const std::string& where) {
+std::vector<int> GroupTriangles(const std::string& group, const TetMesh& mesh,
+                                const Surface& surface, const std::string& where) {
   const auto found = mesh.surface_groups.find(group);
   if (found == mesh.surface_groups.end()) {
     throw base::InputError(
@@ -28,14 +27,14 @@ std::vector<int> GroupTriangles(const std::string& group, const mesh::TetMesh& m
         "Name one with: softforce mesh --help");
   }
   std::set<std::array<int, 3>> wanted;
-  for (const std::array<int, 3>& corners : found->second) wanted.insert(mesh::Sorted(corners));
+  for (const std::array<int, 3>& corners : found->second) wanted.insert(Sorted(corners));
   std::vector<int> triangles;
   for (int t = 0; t < surface.num_triangles(); ++t) {
     const std::array<int, 3> corners{surface.triangles(0, t), surface.triangles(1, t),
                                      surface.triangles(2, t)};
-    if (wanted.count(mesh::Sorted(corners)) > 0) triangles.push_back(t);
+    if (wanted.count(Sorted(corners)) > 0) triangles.push_back(t);
   }
   return triangles;
 }
 
-}  // namespace softforce::pipeline
+}  // namespace softforce::mesh
