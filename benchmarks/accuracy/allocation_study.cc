@@ -38,14 +38,15 @@ void PrintRow(const std::string& name, const AllocationTally& t) {
   fmt::print(
       "| {} | {} | {} | {:.3f} | {} | {} ({:.1f}) | {} | {:.3f} | {:.2f} / {:.2f} | {:.1f} "
       "({:.3f} / {:.3f}) "
-      "| {:.2f} | {}/{} | {:.1f} |\n",
+      "| {:.2f} ({:.2f}) | {:.2f} ({:.2f}) | {}/{} | {:.1f} |\n",
       name, t.frames, t.lost_frames, 100 * t.RightShare(), t.swapped, t.clutter_taken,
       t.clutter_taken > 0 ? std::sqrt(t.clutter_distance2 / t.clutter_taken) : 0, t.flagged_wrong,
       Percent(t.left_out, t.shown), Percent(t.returned_at_once, t.returns),
       Percent(t.returned_at_once + t.returned_next, t.returns), Percent(t.covered, t.regions),
       t.regions > 0 ? 1e3 * t.region_sd / t.regions : 0,
       t.regions > 0 ? 1e3 * std::sqrt(t.region_error2 / t.regions) : 0, 1e3 * t.ForceError(),
-      t.recovered, t.after_blackout, 1e3 * t.seconds / t.frames);
+      1e3 * t.ReportedForceSd(), 1e3 * t.LeastForceSd(), 1e3 * t.LeastForceSdOfAll(), t.recovered,
+      t.after_blackout, 1e3 * t.seconds / t.frames);
   std::fflush(stdout);
 }
 
@@ -64,8 +65,9 @@ int main(int argc, char** argv) {
   fmt::print(
       "| markers | frames | lost | right, % | swapped | clutter taken (px off) | wrong but flagged "
       "| left out, % | back at once / in the next frame, % | hidden ones in their 95 % region, % "
-      "(sd / error, mm) | force error, mN | back after blackouts | ms a frame |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "(sd / error, mm) | force error, mN (reported sd) | the least sd, mN (had all been seen) | "
+      "back after blackouts | ms a frame |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto rule : {allocation::Rule::kOptimal, allocation::Rule::kNearest}) {
     for (const Case& c : Cases()) {
       const bool nearest = rule == allocation::Rule::kNearest;

@@ -1,5 +1,5 @@
 // Pairs of pictures per second from decoded stereo pictures to detections, as a run detects: the
-// cameras side by side on two threads, dots in the whole picture, tags near where they should be.
+// cameras side by side on two threads, markers near where they should be.
 // Beside them the yardstick: one OpenCV Gaussian blur of the same pictures, spread over the same
 // threads. Each row gives `pairs/s` and `blurs`, how many yardsticks a pair costs. Scenes:
 //   recording: the shipped recordings (1280×1024, 14 dots; 14 tags and 4 fiducials), H.264;
@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "softforce/vision/dot_follower.h"
 #include "softforce/vision/dots.h"
 #include "softforce/vision/tag_cells.h"
 #include "softforce/vision/tag_follower.h"
@@ -125,6 +126,22 @@ void Report(benchmark::State* state, const std::vector<Pair>& pairs, double seco
 
 void Dots(benchmark::State& state, const std::vector<Pair>& pairs) {
   if (pairs.empty()) return state.SkipWithError("the recordings are not beside the project");
+  std::vector<vision::DotFollower> followers(2);
+  double seconds = 0;
+  long found[2] = {0, 0};
+  for (auto _ : state) {
+    seconds += kPairs * TimePair(pairs, [&](int c, const cv::Mat& grey) {
+                 found[c] += static_cast<long>(followers[c].Detect(grey).size());
+               });
+  }
+  Report(&state, pairs, seconds, found[0] + found[1]);
+  state.counters["whole"] = static_cast<double>(followers[0].whole_searches()) /
+                            (static_cast<double>(state.iterations()) * kPairs);
+}
+
+// The whole picture every time, as without prediction.
+void DotsWithoutPrediction(benchmark::State& state, const std::vector<Pair>& pairs) {
+  if (pairs.empty()) return state.SkipWithError("the recordings are not beside the project");
   double seconds = 0;
   long found[2] = {0, 0};
   for (auto _ : state) {
@@ -208,6 +225,8 @@ int main(int argc, char** argv) {
   add("tags, recording", softforce::Tags, tags);
   add("tags, crowded", softforce::Tags, many_tags);
   add("tags, one lost", softforce::Tags, lost);
+  add("dots, recording, whole picture", softforce::DotsWithoutPrediction, dots);
+  add("dots, crowded, whole picture", softforce::DotsWithoutPrediction, many_dots);
   add("tags, recording, whole picture", softforce::TagsWithoutPrediction, tags);
   add("tags, crowded, whole picture", softforce::TagsWithoutPrediction, many_tags);
   benchmark::RunSpecifiedBenchmarks();

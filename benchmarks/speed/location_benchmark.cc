@@ -183,7 +183,7 @@ void TwoWeightsOnTheSheet(benchmark::State& state) {
   MeasureFrames(state, stage, stage.Shoot(forces), method);
 }
 
-// A force of 0.5 N that slides by 80 mm there and back.
+// A force of 0.5 N that slides by 85 mm there and back.
 void SlidingOverTheSheet(benchmark::State& state) {
   const Stage stage = OnSheet(state);
   std::vector<std::vector<Force>> forces;

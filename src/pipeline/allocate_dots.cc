@@ -48,7 +48,7 @@ JointQuestion::JointQuestion(const camera::Rig& rig, const Eigen::Isometry3d& T_
   options.allocation = observe.allocation;
   options.detection_probability = observe.detection_probability;
   for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
-    views.push_back(ViewOf(rig.cameras[c], T_rig_robot, features, cameras[c], observe));
+    views.push_back(ViewOf(c, rig.cameras[c], T_rig_robot, features, cameras[c], observe));
     for (const int f : views[c].expected) {
       const View& at = views[c].features[f];
       predictions.push_back({c, at.pixel, at.J * predicted[f].jacobian,
@@ -79,7 +79,7 @@ FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T
                               double threshold_displacement, const ObserveOptions& options) {
   FeatureSightings sightings = NoSightings(predicted.size());
   for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
-    const CameraView view = ViewOf(rig.cameras[c], T_rig_robot, predicted, cameras[c], options);
+    const CameraView view = ViewOf(c, rig.cameras[c], T_rig_robot, predicted, cameras[c], options);
     std::vector<allocation::PredictedPixel> predictions;
     for (const int f : view.expected) {
       const View& at = view.features[f];

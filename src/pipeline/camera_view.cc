@@ -5,9 +5,10 @@
 namespace softforce::pipeline {
 namespace {
 
-View Expect(const camera::Camera& camera, const Eigen::Isometry3d& T_camera_robot,
+View Expect(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_camera_robot,
             const PredictedFeature& feature, double min_facing) {
   View view;
+  if (!feature.covered.empty() && feature.covered[c]) return view;
   const Eigen::Vector3d p_camera = T_camera_robot * feature.position;
   const Eigen::Vector3d normal_camera = T_camera_robot.linear() * feature.normal;
   if (-normal_camera.dot(p_camera.normalized()) < min_facing) return view;
@@ -53,13 +54,13 @@ std::vector<int> DotsOfRightSize(const std::vector<vision::Dot>& dots,
 
 }  // namespace
 
-CameraView ViewOf(const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
+CameraView ViewOf(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
                   const std::vector<PredictedFeature>& predicted, const CameraDetections& seen,
                   const ObserveOptions& options) {
   CameraView view;
   const Eigen::Isometry3d T_camera_robot = camera.T_camera_rig * T_rig_robot;
   for (int f = 0; f < static_cast<int>(predicted.size()); ++f) {
-    view.features.push_back(Expect(camera, T_camera_robot, predicted[f], options.min_facing));
+    view.features.push_back(Expect(c, camera, T_camera_robot, predicted[f], options.min_facing));
     if (!view.features[f].expected) continue;
     view.expected.push_back(f);
     view.nearest = std::min(view.nearest, (T_camera_robot * predicted[f].position).z());
@@ -70,6 +71,11 @@ CameraView ViewOf(const camera::Camera& camera, const Eigen::Isometry3d& T_rig_r
         {seen.dots[d].centroid, WithFloor(seen.dots[d].covariance, options.pixel_floor)});
   }
   return view;
+}
+
+bool IsExpected(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
+                const PredictedFeature& feature, const ObserveOptions& options) {
+  return Expect(c, camera, camera.T_camera_rig * T_rig_robot, feature, options.min_facing).expected;
 }
 
 }  // namespace softforce::pipeline

@@ -9,7 +9,7 @@ namespace softforce::pipeline {
 
 // How one camera should see a feature.
 struct View {
-  bool expected = false;           // in the picture, and turned towards the camera
+  bool expected = false;           // see IsExpected
   Eigen::Vector2d pixel;           // of the detection: the centroid of a dot's picture
   Eigen::Vector2d centroid_shift;  // px; centroid − projection of the centre
   Eigen::Matrix<double, 2, 3> J;   // d pixel / d p_robot, px/m
@@ -25,8 +25,14 @@ struct CameraView {
   std::vector<allocation::DetectedPixel> detections;         // the same
 };
 
-CameraView ViewOf(const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
+// `c` is the camera's number in the rig.
+CameraView ViewOf(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
                   const std::vector<PredictedFeature>& predicted, const CameraDetections& seen,
                   const ObserveOptions& options);
+
+// Whether a camera should see a feature: it is in its picture, turned towards it, and the body is
+// not in the way.
+bool IsExpected(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
+                const PredictedFeature& feature, const ObserveOptions& options);
 
 }  // namespace softforce::pipeline

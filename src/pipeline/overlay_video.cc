@@ -89,13 +89,16 @@ void AddBody(const scene::Scene& scene, const World& world, const OverlayLayers&
 }
 
 std::vector<std::string> Caption(const scene::Scene& scene, const FrameResult& result) {
-  int in_view = 0;
+  int in_view = 0, absent = 0;
   for (const MarkerResult& marker : result.markers) {
-    in_view += marker.status != MarkerStatus::kHidden;
+    const bool hidden = marker.status == MarkerStatus::kHidden;
+    in_view += !hidden;
+    absent += hidden && marker.expected_absent;
   }
   std::vector<std::string> lines{
       fmt::format("{}   frame {}   {:.3f} s", scene.name, result.frame, result.time_s),
       fmt::format("{} of {} markers in view", in_view, result.markers.size())};
+  if (absent > 0) lines.back() += fmt::format(", {} turned away or covered", absent);
   if (!result.ok()) {
     lines.push_back(fmt::format("no forces: {}", estimation::Name(result.status)));
   } else if (result.forces.empty()) {

@@ -7,8 +7,8 @@
 namespace softforce::pipeline {
 
 // Detects the markers in all pictures of a frame at once. AprilTag's detectors keep notes while
-// they work, so every thread has its own; how tags move is followed from frame to frame, so frames
-// must come one after another and in order.
+// they work, so every thread has its own; how markers move is followed from frame to frame, so
+// frames must come one after another and in order.
 class ParallelDetector {
  public:
   // Both must outlive it.
@@ -25,7 +25,7 @@ class ParallelDetector {
 
  private:
   tbb::enumerable_thread_specific<Detector> detectors_;
-  std::vector<vision::TagFollower> followers_;  // of each camera
+  std::vector<MarkerFollower> followers_;  // of each camera
 };
 
 }  // namespace softforce::pipeline

@@ -31,11 +31,9 @@ CameraDetections Detector::Markers(int c, const cv::Mat& picture) const {
   return {{}, detectors_.at(scene_.markers.family).Detect(picture, LensOf(c))};
 }
 
-CameraDetections Detector::Markers(int c, const cv::Mat& picture,
-                                   vision::TagFollower* follower) const {
-  // Dots are found in the whole picture in less time than it takes to keep account of them.
-  if (scene_.markers.type == scene::MarkerType::kDot) return Markers(c, picture);
-  return {{}, follower->Detect(detectors_.at(scene_.markers.family), picture, LensOf(c))};
+CameraDetections Detector::Markers(int c, const cv::Mat& picture, MarkerFollower* follower) const {
+  if (scene_.markers.type == scene::MarkerType::kDot) return {follower->dots.Detect(picture), {}};
+  return {{}, follower->tags.Detect(detectors_.at(scene_.markers.family), picture, LensOf(c))};
 }
 
 std::vector<CameraDetections> Detector::Markers(const vision::FrameSet& frame) const {

@@ -3,11 +3,18 @@
 #include <functional>
 
 #include "softforce/pipeline/run.h"
+#include "softforce/vision/dot_follower.h"
 #include "softforce/vision/recording.h"
 #include "softforce/vision/rig_pose.h"
 #include "softforce/vision/tag_follower.h"
 
 namespace softforce::pipeline {
+
+// Follows the markers of one camera from picture to picture.
+struct MarkerFollower {
+  vision::TagFollower tags;
+  vision::DotFollower dots;
+};
 
 // Detects what a scene's markers and fiducials need in pictures; for one thread.
 class Detector {
@@ -18,7 +25,7 @@ class Detector {
   // What camera c sees.
   CameraDetections Markers(int c, const cv::Mat& picture) const;
   // The same, where `follower` was shown the pictures before.
-  CameraDetections Markers(int c, const cv::Mat& picture, vision::TagFollower* follower) const;
+  CameraDetections Markers(int c, const cv::Mat& picture, MarkerFollower* follower) const;
   std::vector<CameraDetections> Markers(const vision::FrameSet& frame) const;
   std::vector<std::vector<vision::Tag>> Fiducials(const vision::FrameSet& frame) const;
 

@@ -13,7 +13,11 @@ constexpr double kAlone = 0.02;        // share of a camera's pictures that is w
 void RunTally::Add(const FrameResult& result) {
   ++report.frames;
   ++frame_statuses[estimation::Name(result.status)];
-  for (const MarkerResult& marker : result.markers) ++marker_statuses[Name(marker.status)];
+  for (const MarkerResult& marker : result.markers) {
+    ++marker_statuses[Name(marker.status)];
+    const bool hidden = marker.status == MarkerStatus::kHidden;
+    if (hidden && marker.expected_absent) ++markers_expected_absent;
+  }
   if (result.ok()) {
     ++report.usable_frames;
     if (!result.forces.empty()) report.last = result;

@@ -86,6 +86,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
                     {"with_forces", facts.tally.report.usable_frames},
                     {"by_status", facts.tally.frame_statuses}};
   json["markers_by_status"] = facts.tally.marker_statuses;
+  json["markers_expected_absent"] = facts.tally.markers_expected_absent;
   json["warnings"] = facts.tally.report.warnings;
   json["model"] = {{"nodes", facts.world.mesh().num_nodes()},
                    {"cells", facts.world.mesh().num_elements()},

@@ -5,11 +5,15 @@
 #include <cmath>
 
 #include "pipeline/by_twist.h"
+#include "pipeline/camera_view.h"
+#include "pipeline/self_cover.h"
 #include "softforce/pipeline/observe_points.h"
 #include "softforce/pipeline/tracker.h"
 
 namespace softforce::pipeline {
 namespace {
+
+constexpr double kGround = 1e-3;  // m, what is nearer to a marker is what it lies on
 
 double LargestDisplacement(const World& world, const Eigen::Matrix3Xd& u) {
   double largest = 0;
@@ -24,12 +28,20 @@ double LargestDisplacement(const World& world, const Eigen::Matrix3Xd& u) {
 std::vector<MovingFeature> Tracker::Linearise() const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
   const double own = OwnVariance();
+  const SelfCover cover(world_.surface, x);
   std::vector<MovingFeature> features;
   for (const Feature& feature : features_.features()) {
     MovingFeature moving;
     moving.at = {feature.point.weights.Apply(x) + feature.point.offset,
                  own * Eigen::Matrix3d::Identity(),
                  mesh::Normal(world_.surface, x, feature.point.at), feature.diameter};
+    for (const camera::Camera& camera : rig_.cameras) {
+      const Eigen::Vector3d eye = (camera.T_camera_rig * T_rig_robot_).inverse().translation();
+      // Where the body may be a little elsewhere, the dot may come into view.
+      const double radius = 0.5 * feature.diameter + std::sqrt(own);
+      moving.at.covered.push_back(cover.Covers(eye, moving.at.position, moving.at.normal, radius,
+                                               std::max(feature.diameter, kGround)));
+    }
     moving.jacobian.resize(3, estimator_.num_components() + 6);
     moving.jacobian << estimator_.Compliance(feature.point.weights), ByTwist(moving.at.position);
     features.push_back(std::move(moving));
@@ -132,6 +144,7 @@ Tracker::Allocated Tracker::Allocate(const std::vector<CameraDetections>& detect
     allocated.intensity = estimator_.intensity();
     JointSightings found = AllocateDotsJointly(rig_, T_rig_robot_, features, allocated.prior,
                                                detections, threshold, options_.observe);
+    LeaveOutUnconfirmed(features, &found.sightings);
     allocated.sightings = std::move(found.sightings);
     allocated.delta = std::move(found.delta);
   }
@@ -142,7 +155,7 @@ Tracker::Allocated Tracker::Allocate(const std::vector<CameraDetections>& detect
 // A body that moves by much does not answer linearly. Where the first allocation has brought it,
 // the gates need not allow for that any more.
 bool Tracker::AllocateAgain(const std::vector<CameraDetections>& detections, double threshold,
-                            const Eigen::MatrixXd& covariance, Allocated* allocated) const {
+                            const Eigen::MatrixXd& covariance, Allocated* allocated) {
   constexpr double kWiden = 4;  // of variances: the first allocation may have been wrong in parts
   const int n = estimator_.num_components();
   const std::vector<MovingFeature> features = Linearise();
@@ -152,6 +165,7 @@ bool Tracker::AllocateAgain(const std::vector<CameraDetections>& detections, dou
   near.mean.head(n).setZero();
   JointSightings found = AllocateDotsJointly(rig_, T_rig_robot_, features, prior, detections,
                                              2 * threshold, options_.observe, &near);
+  LeaveOutUnconfirmed(features, &found.sightings);
   const bool changed = found.sightings.dots != allocated->sightings.dots;
   std::vector<PredictedFeature> predicted;
   for (const MovingFeature& feature : features) predicted.push_back(feature.at);
@@ -162,6 +176,27 @@ bool Tracker::AllocateAgain(const std::vector<CameraDetections>& detections, dou
         Locate(rig_, T_rig_robot_, predicted, allocated->sightings, options_.observe);
   }
   return changed;
+}
+
+void Tracker::LeaveOutUnconfirmed(const std::vector<MovingFeature>& features,
+                                  FeatureSightings* sightings) {
+  const auto cameras = static_cast<int>(rig_.cameras.size());
+  sighted_.assign(features.size(), std::vector<char>(cameras, 0));
+  for (size_t f = 0; f < features.size(); ++f) {
+    std::vector<camera::PixelObservation>& pixels = sightings->pixels[f];
+    for (const camera::PixelObservation& pixel : pixels) sighted_[f][pixel.camera] = 1;
+    if (pixels.size() != 1 || sighted_before_.empty()) continue;
+    const int alone = pixels.front().camera;
+    if (sighted_before_[f][alone]) continue;
+    bool others = false;
+    for (int c = 0; c < cameras; ++c) {
+      others = others || (c != alone && IsExpected(c, rig_.cameras[c], T_rig_robot_, features[f].at,
+                                                   options_.observe));
+    }
+    if (!others) continue;
+    pixels.clear();
+    sightings->dots[f].clear();
+  }
 }
 
 std::vector<MarkerObservation> Tracker::ObservationsOf(const Allocated& allocated,

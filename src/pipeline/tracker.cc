@@ -62,6 +62,8 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
   options_.Check();
   registration_covariance_ = InRobotFrame(rig_covariance, T_rig_robot_);
   estimator_.SetRegistrationCovariance(registration_covariance_);
+  constexpr double kFirstGuess = 0.01e-3;  // m
+  own_variance_ = kFirstGuess * kFirstGuess;
   if (scene.forces.known_locations) return;
   if (options.estimator.method != estimation::EstimationMethod::kConverged) {
     throw base::InputError("--method",
@@ -121,7 +123,9 @@ FrameResult Tracker::Process(int frame, double time_s,
       result.forces = ForceResults(estimate);
     }
   }
+  sighted_before_ = estimate.ok() ? std::move(sighted_) : std::vector<std::vector<char>>();
   result.markers = MarkerResults(located, rejected);
+  TellWhatIsAbsent(&result.markers);
   TellWhatWasUsed(attempt.chosen, rejected, &result.markers);
   if (estimate.ok()) ExpectMarkers(located, rejected, &result.markers);
   AddActuators(actuation, &result);
@@ -140,6 +144,7 @@ FrameResult Tracker::Skip(int frame, double time_s, const std::string& reason) {
   ++frames_without_forces_;
   observations_.clear();
   sightings_ = {};
+  sighted_before_.clear();
   const size_t features = features_.features().size();
   result.markers =
       MarkerResults(std::vector<FeatureObservation>(features), std::vector<char>(features, 0));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pipeline/by_twist.h"
+#include "pipeline/camera_view.h"
 #include "pipeline/force_locator.h"
 #include "softforce/pipeline/tracker.h"
 
@@ -33,6 +34,18 @@ std::vector<ForceResult> Tracker::ForceResults(const estimation::ForceEstimate& 
                       estimator_.ForceCovariance(estimate.covariance, s)});
   }
   return forces;
+}
+
+void Tracker::TellWhatIsAbsent(std::vector<MarkerResult>* markers) const {
+  if (rig_.cameras.empty()) return;
+  for (MarkerResult& marker : *markers) marker.expected_absent = true;
+  const std::vector<MovingFeature> moving = Linearise();
+  for (size_t f = 0; f < moving.size(); ++f) {
+    for (int c = 0; c < static_cast<int>(rig_.cameras.size()); ++c) {
+      if (!IsExpected(c, rig_.cameras[c], T_rig_robot_, moving[f].at, options_.observe)) continue;
+      (*markers)[features_.features()[f].marker].expected_absent = false;
+    }
+  }
 }
 
 void Tracker::LocateForces(const fem::Actuation& actuation, FrameResult* result,
@@ -98,8 +111,7 @@ std::vector<MarkerResult> Tracker::MarkerResults(
 // Where a marker is by all that was seen of the others. What the model gets wrong in each place by
 // itself is taken from the frame: the misfit that its forces leave says how large that is.
 void Tracker::ExpectMarkers(const std::vector<FeatureObservation>& located,
-                            const std::vector<char>& rejected,
-                            std::vector<MarkerResult>* markers) const {
+                            const std::vector<char>& rejected, std::vector<MarkerResult>* markers) {
   const int n = estimator_.num_components();
   const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
   const std::vector<MovingFeature> features = Linearise();
@@ -109,14 +121,15 @@ void Tracker::ExpectMarkers(const std::vector<FeatureObservation>& located,
       SharedCovariance(kDiffuse * intensity_covariance_) +
       1e-18 * Eigen::MatrixXd::Identity(n + 6, n + 6);  // so that nothing is known exactly
   const Eigen::MatrixXd prior_information = prior.inverse();
-  double own = std::pow(options_.region_floor, 2);
+  const double floor = std::pow(options_.region_floor, 2);
+  double own = std::max(own_variance_, floor);
   Eigen::VectorXd delta;
   Eigen::MatrixXd covariance;
   constexpr int kRounds = 4;
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::MatrixXd information = prior_information;
+    Eigen::MatrixXd of_data = Eigen::MatrixXd::Zero(n + 6, n + 6);
     Eigen::VectorXd weighted = Eigen::VectorXd::Zero(n + 6);
-    double squares = 0;
+    double squares = 0, slope = 0;  // the slope is 1/m², of the expected squares by `own`
     int rows = 0;
     for (size_t f = 0; f < located.size(); ++f) {
       if (located[f].whitening.rows() == 0 || rejected[f]) continue;
@@ -125,18 +138,30 @@ void Tracker::ExpectMarkers(const std::vector<FeatureObservation>& located,
       const Eigen::VectorXd misfit = W * (located[f].position - features[f].at.position);
       const Eigen::MatrixXd R =
           Eigen::MatrixXd::Identity(W.rows(), W.rows()) + own * W * W.transpose();
-      const Eigen::MatrixXd weight = R.inverse() * A;
-      information += A.transpose() * weight;
+      const Eigen::MatrixXd inverse = R.inverse();
+      const Eigen::MatrixXd weight = inverse * A;
+      of_data += A.transpose() * weight;
       weighted += weight.transpose() * misfit;
-      squares += misfit.dot(R.inverse() * misfit);
+      squares += misfit.dot(inverse * misfit);
+      slope += (inverse * W * W.transpose()).trace();
       rows += static_cast<int>(W.rows());
     }
-    const Eigen::LLT<Eigen::MatrixXd> llt(information);
+    const Eigen::LLT<Eigen::MatrixXd> llt(prior_information + of_data);
     delta = llt.solve(weighted);
     covariance = llt.solve(Eigen::MatrixXd::Identity(n + 6, n + 6));
-    const double excess = (squares - weighted.dot(delta)) / std::max(1, rows - n);
-    if (excess <= 1.05) break;
-    own *= excess;
+    // What the fit leaves, and what it would leave if `own` were right.
+    const double left = squares - 2 * weighted.dot(delta) + delta.dot(of_data * delta);
+    const double freedom = rows - (covariance * of_data).trace();
+    if (!(freedom > 1) || !(slope > 0)) break;
+    const double found = own + (left - freedom) * rows / (slope * freedom);
+    // A frame says little about it by itself, unless it is clearly larger.
+    constexpr double kFrames = 10, kClearly = 3;  // the latter in standard deviations
+    const bool clearly = left - freedom > kClearly * std::sqrt(2 * freedom);
+    if (!clearly || round == kRounds - 1) {
+      own_variance_ += (found - own_variance_) / kFrames;
+      break;
+    }
+    own = std::max(found, floor);
   }
   for (size_t m = 0; m < markers->size(); ++m) {
     MarkerResult& marker = (*markers)[m];

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -39,32 +40,62 @@ std::optional<Ellipse> EllipseOf(const std::vector<cv::Point>& contour, double* 
   return Ellipse({m.m10 / m.m00, m.m01 / m.m00}, shape);
 }
 
-// A first look at a few pixels: a disc is brighter (darker) inside than around it nearly
-// everywhere. Few blobs of a picture's clutter are, so that only few need to be measured.
-bool StandsOut(const cv::Mat& smooth, const Ellipse& ellipse, bool bright, double min_contrast) {
-  constexpr int kDirections = 8;
-  constexpr int kMaxExceptions = 2;
+double Median(double* values, int count) {
+  std::nth_element(values, values + count / 2, values + count);
+  return values[count / 2];
+}
+
+// A first look at a few pixels: a disc is brighter (darker) inside than around it, nearly
+// everywhere a little and at the median by its contrast. Few blobs of a picture's clutter are, so
+// that only few need to be measured.
+bool StandsOut(const cv::Mat& smooth, const cv::Point& corner, const Ellipse& ellipse, bool bright,
+               double min_contrast) {
+  constexpr int kDirections = 16;
+  constexpr int kMaxExceptions = 4;
   constexpr double kOutside = 2.5;  // px from the contour, where blur has faded
-  const int inside = GreyAt(smooth, ellipse.centre());
+  constexpr double kShare = 0.65;   // of the smallest contrast, that the first look must show
+  // px², of the lens, the pixel and the smoothing: a small disc is nowhere as bright as it is.
+  constexpr double kBlur2 = 2;
+  const Eigen::Vector2d centre = ellipse.centre() - Eigen::Vector2d(corner.x, corner.y);
+  const int inside = GreyAt(smooth, centre);
+  const double sign = bright ? 1 : -1;
+  std::array<double, kDirections> here, around;
   int exceptions = 0;
   for (int i = 0; i < kDirections; ++i) {
     const Eigen::Vector2d contour = ellipse.ContourAt(2 * M_PI * i / kDirections);
-    const int here = GreyAt(smooth, ellipse.centre() + 0.4 * contour);
-    const int around = GreyAt(smooth, ellipse.centre() + contour + kOutside * contour.normalized());
-    const double contrast =
-        bright ? std::min(here, inside) - around : around - std::max(here, inside);
-    exceptions += contrast < 0.5 * min_contrast;
+    here[i] = sign * GreyAt(smooth, centre + 0.4 * contour);
+    around[i] = sign * GreyAt(smooth, centre + contour + kOutside * contour.normalized());
+    exceptions += std::min(here[i], sign * inside) - around[i] < 0.5 * min_contrast;
+    if (exceptions > kMaxExceptions) return false;
   }
-  return exceptions <= kMaxExceptions;
+  const double left = 1 - std::exp(-0.5 * ellipse.short_half() * ellipse.short_half() / kBlur2);
+  return Median(here.data(), kDirections) - Median(around.data(), kDirections) >=
+         kShare * left * min_contrast;
 }
 
-void CollectBlobs(const cv::Mat& mask, const cv::Mat& smooth, bool bright,
-                  const DotOptions& options, std::vector<Ellipse>* blobs) {
+// Whether a contour ends where only the part that is looked at does.
+bool IsCut(const cv::Rect& box, const cv::Rect& part, const cv::Size& picture) {
+  return (box.x == 0 && part.x > 0) || (box.y == 0 && part.y > 0) ||
+         (box.br().x == part.width && part.br().x < picture.width) ||
+         (box.br().y == part.height && part.br().y < picture.height);
+}
+
+// What is left to look at in a part of the picture.
+struct Part {
+  cv::Rect rect;     // px, of `mask` in the picture
+  cv::Size picture;  // px
+  cv::Mat smooth;    // larger than the part
+  cv::Point corner;  // px, of `smooth` in the picture
+};
+
+void CollectBlobs(const cv::Mat& mask, const Part& part, bool bright, const DotOptions& options,
+                  std::vector<Ellipse>* blobs) {
   constexpr double kSlack = 2;            // px; blur and the threshold shift the contour
   constexpr double kMinAreaShare = 0.85;  // of the ellipse with the contour's moments; a disc has 1
   std::vector<std::vector<cv::Point>> contours;
   std::vector<cv::Vec4i> hierarchy;
-  cv::findContours(mask, contours, hierarchy, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
+  cv::findContours(mask, contours, hierarchy, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE,
+                   part.rect.tl());
   for (size_t i = 0; i < contours.size(); ++i) {
     if (hierarchy[i][3] >= 0 || contours[i].size() < 4) continue;  // a hole, or a speck
     const cv::Rect box = cv::boundingRect(contours[i]);
@@ -72,20 +103,34 @@ void CollectBlobs(const cv::Mat& mask, const cv::Mat& smooth, bool bright,
         std::max(box.width, box.height) < options.min_diameter - kSlack) {
       continue;
     }
+    if (IsCut(box - part.rect.tl(), part.rect, part.picture)) continue;
     double area_share = 0;
     const std::optional<Ellipse> ellipse = EllipseOf(contours[i], &area_share);
     if (!ellipse || 2 * ellipse->short_half() < options.min_diameter - kSlack) continue;
     if (area_share < kMinAreaShare) continue;
-    if (StandsOut(smooth, *ellipse, bright, options.min_contrast)) blobs->push_back(*ellipse);
+    if (StandsOut(part.smooth, part.corner, *ellipse, bright, options.min_contrast)) {
+      blobs->push_back(*ellipse);
+    }
   }
 }
 
 }  // namespace
 
-std::vector<Ellipse> FindEllipticBlobs(const cv::Mat& grey, const DotOptions& options) {
-  cv::Mat smooth, mean, above, mask;
-  cv::GaussianBlur(grey, smooth, cv::Size(3, 3),
-                   0);  // single noisy pixels would each become a blob
+std::vector<Ellipse> FindEllipticBlobs(const cv::Mat& grey, const cv::Rect& rect,
+                                       const DotOptions& options) {
+  const cv::Rect all(0, 0, grey.cols, grey.rows);
+  // What is around the part counts for means and for first looks, as in the whole picture.
+  const cv::Rect wide =
+      cv::Rect(rect.x - kNeighbourhood, rect.y - kNeighbourhood, rect.width + 2 * kNeighbourhood,
+               rect.height + 2 * kNeighbourhood) &
+      all;
+  Part part{rect, grey.size(), {}, wide.tl()};
+  cv::Mat mean, above, mask;
+  // Single noisy pixels would each become a blob. OpenCV rounds differently if it reads beyond the
+  // part; there is room for what the part's border gets wrong.
+  cv::GaussianBlur(grey(wide), part.smooth, cv::Size(3, 3), 0, 0,
+                   cv::BORDER_DEFAULT | cv::BORDER_ISOLATED);
+  const cv::Mat smooth = part.smooth(rect - wide.tl());
   cv::blur(smooth, mean, cv::Size(kNeighbourhood, kNeighbourhood));
   std::vector<Ellipse> blobs;
   for (const bool bright : {true, false}) {
@@ -96,7 +141,7 @@ std::vector<Ellipse> FindEllipticBlobs(const cv::Mat& grey, const DotOptions& op
       cv::subtract(mean, smooth, above);
     }
     cv::threshold(above, mask, kThresholdShare * options.min_contrast, 255, cv::THRESH_BINARY);
-    CollectBlobs(mask, smooth, bright, options, &blobs);
+    CollectBlobs(mask, part, bright, options, &blobs);
   }
   return blobs;
 }

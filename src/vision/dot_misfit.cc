@@ -49,7 +49,7 @@ Misfit Summarize(const std::vector<EdgeMisfit>& edge, double area) {
     profile[pixel.depth] += pixel.value;
     ++count[pixel.depth];
   }
-  Misfit misfit{0, 0};
+  Misfit misfit{0, 0, 0};
   double classes = 0;
   for (int k = 0; k < kSectors; ++k) {
     misfit.area_share += std::max(0.0, std::abs(excess[k]) - 2 * std::sqrt(variance[k])) / area;
@@ -64,7 +64,9 @@ Misfit Summarize(const std::vector<EdgeMisfit>& edge, double area) {
     const double own = pixel.value - profile[pixel.depth];
     misfit.roughness += own * own / pixel.noise2;
   }
-  misfit.roughness /= std::max(1.0, static_cast<double>(edge.size()) - classes);
+  const double freedom = std::max(1.0, static_cast<double>(edge.size()) - classes);
+  misfit.roughness /= freedom;
+  misfit.chance = std::sqrt(2 / freedom);
   return misfit;
 }
 

@@ -18,6 +18,7 @@ struct Misfit {
   double
       area_share;  // of the ellipse, that the dot exceeds or leaves out, beyond what noise explains
   double roughness;  // mean squared misfit of an edge pixel, over the noise's variance
+  double chance;     // standard deviation of that if there is nothing but noise
 };
 
 // `patch_centre` is the place (px) from which the patch's pixels are counted; `area` is the dot's,

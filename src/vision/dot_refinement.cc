@@ -106,6 +106,8 @@ bool WithinBounds(const Ellipse& ellipse, double contrast, const DotOptions& opt
 std::optional<Dot> MeasureDot(const cv::Mat& grey, const Ellipse& blob, const DotOptions& options) {
   constexpr int kMaxRounds = 5;
   constexpr double kSettled = 0.1;  // px, change of the ellipse in one round
+  constexpr double kNearlyEnough = 0.8;
+  constexpr double kByChance = 2;  // standard deviations
   constexpr double kBlursToEdge =
       2.8;  // this many blurs away from the contour, nothing is left of it
   BlurredEllipse now{blob, 1.0};
@@ -116,7 +118,8 @@ std::optional<Dot> MeasureDot(const cv::Mat& grey, const Ellipse& blob, const Do
     const std::optional<Levels> levels = FitLevels(*patch);
     if (!levels) return std::nullopt;
     const double contrast = levels->Contrast(Eigen::Vector2d::Zero());
-    if (std::abs(contrast) < 0.5 * options.min_contrast) return std::nullopt;
+    // The contrast hardly changes from round to round; clutter of too little is not worth five.
+    if (std::abs(contrast) < kNearlyEnough * options.min_contrast) return std::nullopt;
     const Moments moments = MomentsOf(*patch, *levels, now.blur);
     const std::optional<BlurredEllipse> sharper = Sharpen(now.ellipse, moments);
     if (!sharper) return std::nullopt;
@@ -130,8 +133,10 @@ std::optional<Dot> MeasureDot(const cv::Mat& grey, const Ellipse& blob, const Do
     if (misfit.area_share > options.max_ellipse_misfit) return std::nullopt;
     Dot dot;
     dot.centroid = sharper->ellipse.centre();
-    // Compression roughens edges and smooths the ground that the noise is read from.
-    dot.covariance = std::max(1.0, misfit.roughness) * CentroidCovariance(*patch, *levels, moments);
+    // Compression roughens edges and smooths the ground that the noise is read from. Noise alone
+    // makes an edge look rougher as often as smoother, which is no reason to trust it less.
+    const bool rough = misfit.roughness > 1 + kByChance * misfit.chance;
+    dot.covariance = (rough ? misfit.roughness : 1) * CentroidCovariance(*patch, *levels, moments);
     dot.long_axis = 2 * sharper->ellipse.long_half();
     dot.short_axis = 2 * sharper->ellipse.short_half();
     dot.contrast = contrast;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "softforce/base/input_error.h"
@@ -25,12 +27,23 @@ void DotOptions::Check() const {
 }
 
 std::vector<Dot> DetectDots(const cv::Mat& grey, const DotOptions& options) {
+  return DetectDotsIn(grey, {cv::Rect(0, 0, grey.cols, grey.rows)}, options);
+}
+
+std::vector<Dot> DetectDotsIn(const cv::Mat& grey, const std::vector<cv::Rect>& areas,
+                              const DotOptions& options) {
   options.Check();
   CV_Assert(grey.type() == CV_8UC1);
   std::vector<Dot> dots;
   if (grey.empty()) return dots;
-  for (const Ellipse& blob : FindEllipticBlobs(grey, options)) {
-    if (const std::optional<Dot> dot = MeasureDot(grey, blob, options)) dots.push_back(*dot);
+  std::set<std::pair<double, double>> looked_at;  // centres: areas may overlap
+  for (const cv::Rect& area : areas) {
+    const cv::Rect inside = area & cv::Rect(0, 0, grey.cols, grey.rows);
+    if (inside.empty()) continue;
+    for (const Ellipse& blob : FindEllipticBlobs(grey, inside, options)) {
+      if (!looked_at.emplace(blob.centre().x(), blob.centre().y()).second) continue;
+      if (const std::optional<Dot> dot = MeasureDot(grey, blob, options)) dots.push_back(*dot);
+    }
   }
   std::sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) {
     return std::make_pair(a.centroid.y(), a.centroid.x()) <

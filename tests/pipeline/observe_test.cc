@@ -165,5 +165,20 @@ TEST(Observe, AMarkerThatFacesAwayIsNotExpected) {
   }
 }
 
+TEST(Observe, AMarkerBehindTheBodyIsNotExpected) {
+  Plate plate;
+  const auto cameras = plate.See();
+  plate.predicted[3].covered = {1, 1};
+  plate.predicted[5].covered = {0, 1};
+  const auto observations = plate.Observe(cameras);
+  for (size_t f = 0; f < observations.size(); ++f) {
+    using Status = FeatureObservation::Status;
+    EXPECT_EQ(observations[f].status, f == 3   ? Status::kHidden
+                                      : f == 5 ? Status::kOneCamera
+                                               : Status::kSeen)
+        << f;
+  }
+}
+
 }  // namespace
 }  // namespace softforce::pipeline

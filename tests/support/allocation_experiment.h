@@ -36,6 +36,7 @@ class AllocationExperiment {
         T_rig_robot_(geometry::ExpSe3(RegistrationSd().cwiseProduct(DrawMany(6)))),
         tracker_(scene_, world_, rig_, Eigen::Isometry3d::Identity(),
                  RegistrationSd().cwiseAbs2().asDiagonal(), options),
+        exact_(truth_.solver.get(), truth_.sites, ExactModel()),
         state_(truth_.solver->AtRest()),
         hidden_(NumMarkers(), 0),
         was_hidden_(NumMarkers(), 0),
@@ -67,6 +68,12 @@ class AllocationExperiment {
   }
 
   static constexpr double kNoise = 0.05;  // px
+
+  static estimation::EstimatorOptions ExactModel() {
+    estimation::EstimatorOptions exact;
+    exact.common_model_error = exact.local_model_error = 0;
+    return exact;
+  }
 
   double Draw() { return normal_(random_); }
   double Uniform(double low = 0, double high = 1) { return low + (high - low) * uniform_(random_); }
@@ -165,7 +172,9 @@ class AllocationExperiment {
     if (!centroid) return {};
     vision::Dot dot;
     dot.centroid = *centroid + kNoise * Eigen::Vector2d(Draw(), Draw());
-    dot.covariance = kNoise * kNoise * Eigen::Matrix2d::Identity();
+    // The picture tells of a part of the noise; the rest is what the tracker adds (pixel_floor).
+    const double floor = pipeline::ObserveOptions().pixel_floor;
+    dot.covariance = (kNoise * kNoise - floor * floor) * Eigen::Matrix2d::Identity();
     dot.long_axis = kDotDiameter * camera.lens.fx / p.z();
     dot.short_axis = facing * dot.long_axis;
     dot.contrast = 80;
@@ -292,11 +301,45 @@ class AllocationExperiment {
       CountReturn(m, right);
     }
     if (usable) {
+      Eigen::VectorXd intensity(4);
+      intensity << force_.head<3>(), force_(5);
+      exact_.StartFrom(intensity, {});
+      tally_.least_variance_all += ForceVariance(false) / 2;
+      tally_.least_variance += ForceVariance(true) / 2;
       for (int s = 0; s < 2; ++s) {
+        tally_.reported_variance += result.forces[s].covariance.trace() / 2;
         tally_.force_error2 +=
             (result.forces[s].force - force_.segment<3>(3 * s)).squaredNorm() / 2;
       }
     }
+  }
+
+  // N², the sum over both forces' variances that noise and the rig's place leave, whoever estimates
+  // them by an exact model: from all that can be seen, or from what is not hidden alone.
+  double ForceVariance(bool hide) const {
+    const int n = exact_.num_components();
+    const Eigen::Matrix3Xd x = truth_.mesh().nodes + state_.u;
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + 6, n + 6);
+    information.bottomRightCorner<6, 6>() =
+        RegistrationSd().cwiseAbs2().cwiseInverse().asDiagonal();
+    for (int m = 0; m < NumMarkers(); ++m) {
+      if (hide && hidden_[m]) continue;
+      Eigen::MatrixXd moved(3, n + 6);
+      moved << exact_.Compliance(truth_.markers[m].weights), Eigen::Matrix3d::Identity(),
+          -geometry::Skew(positions_.col(m));
+      for (size_t c = 0; c < rig_.cameras.size(); ++c) {
+        if (!pixels_[c].col(m).allFinite()) continue;
+        const camera::Camera& camera = rig_.cameras[c];
+        const Eigen::Isometry3d T_camera_robot = camera.T_camera_rig * T_rig_robot_;
+        const Eigen::Vector3d p = T_camera_robot * positions_.col(m);
+        Eigen::Matrix<double, 2, 3> pixel;  // px/m
+        pixel << camera.lens.fx, 0, -camera.lens.fx * p.x() / p.z(), 0, camera.lens.fy,
+            -camera.lens.fy * p.y() / p.z();
+        const Eigen::MatrixXd J = pixel / p.z() * T_camera_robot.linear() * moved / kNoise;
+        information += J.transpose() * J;
+      }
+    }
+    return information.inverse().topLeftCorner(n, n).trace();
   }
 
   void CountReturn(int m, bool right) {
@@ -324,6 +367,7 @@ class AllocationExperiment {
   camera::Rig rig_;
   Eigen::Isometry3d T_rig_robot_;  // really; the tracker believes the identity
   pipeline::Tracker tracker_;
+  estimation::ForceEstimator exact_;  // the truth's model
   fem::Equilibrium state_;
   Eigen::Matrix3Xd positions_;  // m, of the markers, really
   geometry::Vector6d phase_;

@@ -36,12 +36,19 @@ struct AllocationTally {
   double region_error2 = 0;      // m², sum of the squared errors in them (of one axis)
   double clutter_distance2 = 0;  // px², sum over clutter taken, to where the marker really was
   double force_error2 = 0, motion = 0, fastest = 0, seconds = 0;  // N², m, m, s; sums but `fastest`
+  // N², sums of what an exact model would leave for noise and the rig's place, had all markers been
+  // seen and as they were; and of what the tracker reports.
+  double least_variance_all = 0, least_variance = 0, reported_variance = 0;
   int after_blackout = 0, recovered = 0;  // blackouts; forces back in the first frame after
 
   double RightShare() const {
     return static_cast<double>(right + hidden_right) / static_cast<double>(shown + hidden);
   }
-  double ForceError() const { return std::sqrt(force_error2 / std::max(1, frames - lost_frames)); }
+  double ForceError() const { return RootMean(force_error2); }               // N
+  double LeastForceSd() const { return RootMean(least_variance); }           // N
+  double LeastForceSdOfAll() const { return RootMean(least_variance_all); }  // N
+  double ReportedForceSd() const { return RootMean(reported_variance); }     // N
+  double RootMean(double sum) const { return std::sqrt(sum / std::max(1, frames - lost_frames)); }
 };
 
 }  // namespace softforce::testing

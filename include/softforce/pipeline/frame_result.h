@@ -32,6 +32,9 @@ struct MarkerResult {
   Eigen::Vector3d measured = Eigen::Vector3d::Constant(NAN);  // m; NaN if hidden or rejected
   double sd = NAN;                                            // m, root mean square over the axes
   Eigen::Vector3d model = Eigen::Vector3d::Constant(NAN);     // m
+  // No camera could have seen it: it faces away from all, or the body or the picture's edge is in
+  // the way. That it is hidden says nothing then.
+  bool expected_absent = false;
   bool used = false;         // whether the forces come from it, among others
   double information = NAN;  // share of what the observations tell about the forces; see
                              // estimation::ForceInformation; NaN if it was not observed

@@ -20,6 +20,8 @@ struct PredictedFeature {
   Eigen::Matrix3d covariance;  // m², of the prediction
   Eigen::Vector3d normal;      // of the surface there, outward
   double diameter = 0;         // m, of the dot; 0 for a corner
+  // Per camera of the rig: whether the body itself stands in the way. Empty: in none.
+  std::vector<char> covered = {};
 };
 
 // The same as a function of what all features share, the body's forces and the rig's place: a

@@ -26,8 +26,8 @@ struct TrackerOptions {
   double nonlinearity = 0.1;
   double prediction_floor = 0.3e-3;  // m, standard deviation of a prediction at the least
   // m, the same for the region of a hidden marker once the frame's forces are known; it is larger
-  // by as much as these forces leave of what was seen unexplained.
-  double region_floor = 0.01e-3;
+  // by as much as these forces leave of what was seen unexplained, over some frames.
+  double region_floor = 0.002e-3;
   // The paper's threshold, as a share of the smallest marker spacing; more than a marker may go.
   double threshold_displacement = 2;
 
@@ -108,7 +108,7 @@ class Tracker {
   Allocated Allocate(const std::vector<CameraDetections>& detections, double threshold);
   // Anew where the body was found to be: false if nothing changes.
   bool AllocateAgain(const std::vector<CameraDetections>& detections, double threshold,
-                     const Eigen::MatrixXd& covariance, Allocated* allocated) const;
+                     const Eigen::MatrixXd& covariance, Allocated* allocated);
   // Estimates the forces and allocates again where they bring the body, until that is settled.
   // `again`: not the first attempt at this frame.
   Attempt Settle(Allocated allocated, const std::vector<CameraDetections>& detections,
@@ -118,10 +118,15 @@ class Tracker {
                                       const fem::Actuation& actuation);
   std::vector<Allocated> Propose(const std::vector<CameraDetections>& detections,
                                  const Eigen::MatrixXd& intensities) const;
+  // A dot that comes back in one camera alone, while another should see it too, is believed when
+  // that camera sees it a second time: it may be something else.
+  void LeaveOutUnconfirmed(const std::vector<MovingFeature>& features, FeatureSightings* sightings);
+  // Whether no camera could see the features of each marker.
+  void TellWhatIsAbsent(std::vector<MarkerResult>* markers) const;
   std::vector<MarkerObservation> ObservationsOf(const Allocated& allocated,
                                                 const std::vector<char>& chosen) const;
   void ExpectMarkers(const std::vector<FeatureObservation>& located,
-                     const std::vector<char>& rejected, std::vector<MarkerResult>* markers) const;
+                     const std::vector<char>& rejected, std::vector<MarkerResult>* markers);
   std::vector<MarkerResult> MarkerResults(const std::vector<FeatureObservation>& observations,
                                           const std::vector<char>& rejected) const;
   // Which of the located features to estimate from, and what their markers tell about the forces.
@@ -145,7 +150,11 @@ class Tracker {
   geometry::Matrix6d registration_covariance_;  // as the estimator takes it
   std::vector<MarkerObservation> observations_;
   FeatureSightings sightings_;
-  std::vector<double> information_;       // per marker, of the last frame
+  // Per feature and camera, whether it was sighted there in the last frame, believed or not, and in
+  // this one; empty if the last frame is not to be relied on.
+  std::vector<std::vector<char>> sighted_before_, sighted_;
+  double own_variance_;              // m², of hidden markers' own errors, as the last frames say
+  std::vector<double> information_;  // per marker, of the last frame
   Eigen::MatrixXd intensity_covariance_;  // N²; grows by the random walk from frame to frame
   // Of wide searches: after one in vain the next few frames go without, then more and more.
   struct {
