@@ -134,6 +134,7 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
   Round round;
   round.forces = forces;
   double followed_to = kNearEquilibrium * diagonal, last_move = INFINITY;
+  bool reconsidered = false;  // what was rejected
   for (int i = 0; i < kMaxRounds; ++i) {
     estimate.rounds = i + 1;
     const std::vector<TrialForce> before = round.forces;
@@ -149,8 +150,15 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
     // `finest` differs a little from round to round.
     const bool settled = move <= finest && followed_to <= 1.01 * finest;
     if (i > 0 && SameStructure(before, round.forces) && settled) {
-      Conclude(&round, &estimate);
-      return estimate;
+      const auto first = std::find(estimate.rejected.begin(), estimate.rejected.end(), char{1});
+      if (reconsidered || first == estimate.rejected.end()) {
+        Conclude(&round, &estimate);
+        return estimate;
+      }
+      // What seemed impossible far from the answer may be possible here.
+      reconsidered = true;
+      std::fill(first, estimate.rejected.end(), char{0});
+      continue;
     }
     round.renew = i > 1 && move > kSlow * last_move && move > finest;
     last_move = move;

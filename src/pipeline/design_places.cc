@@ -99,7 +99,8 @@ std::vector<int> TrianglesOf(const World& world, const std::string& what,
   named = mesh::WithSurfaceGroups(std::move(named), {"it=" + what}, option);
   std::set<int> triangles;
   for (const auto& [name, corners] : named.surface_groups) {
-    for (const int t : mesh::GroupTriangles(name, named, world.surface, option)) triangles.insert(t);
+    for (const int t : mesh::GroupTriangles(name, named, world.surface, option))
+      triangles.insert(t);
   }
   return {triangles.begin(), triangles.end()};
 }

@@ -20,8 +20,10 @@ scene::Scene ChamberScene() {
     box.surface_groups["cavity"].push_back(
         {hollow.walls(0, t), hollow.walls(1, t), hollow.walls(2, t)});
   }
+  // Of its own: tests run beside each other.
   const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "pipeline_chamber.msh";
+      std::filesystem::path(::testing::TempDir()) /
+      (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".msh");
   mesh::WriteMesh(file, box, 1e-3);
 
   scene::Scene scene = scene::LoadScene(std::string(SOFTFORCE_SOURCE_DIR) +

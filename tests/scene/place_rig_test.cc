@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -116,9 +117,12 @@ class OfAnotherProgram : public ::testing::TestWithParam<RigFormat> {
  protected:
   // A rig file of one camera in that format.
   std::filesystem::path Saved() const {
-    const auto folder = std::filesystem::path(::testing::TempDir()) / "place_other_formats";
+    // Of its own: tests run beside each other.
+    std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '_');
+    const auto folder = std::filesystem::path(::testing::TempDir()) / name;
     std::filesystem::create_directories(folder);
-    const camera::Rig rig = LoadRig(Write("place_ours.yaml", kCameras));
+    const camera::Rig rig = LoadRig(Write(name + ".yaml", kCameras));
     if (GetParam() == RigFormat::kRos) {
       SaveRigAs(rig, GetParam(), folder);
       return folder / "only.yaml";
