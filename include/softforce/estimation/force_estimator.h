@@ -50,7 +50,7 @@ struct EstimatorOptions {
   int max_factorisations = 100;
   // Converged when neither the estimate nor any observed point would move by more than so many of
   // its standard deviations.
-  double tolerance = 0.05;
+  double tolerance = 0.1;
   double max_staleness =
       3e-3;  // m, how far the body may move before the compliance is computed anew: 1 % of an sd
 
