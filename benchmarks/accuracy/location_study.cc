@@ -3,9 +3,9 @@
 // own (4 times the cells, 10 nodes each, refined at the supports), estimates on the given one.
 // Prints Markdown tables.
 //
-//   build/release/benchmarks/location_study [LOADS [DRAWS [MESHES]]]
+//   build/release/benchmarks/location_study [LOADS [DRAWS [ROW [MESHES]]]]
 //
-// LOADS different loads per row, each seen DRAWS times with fresh noise.
+// LOADS different loads per row, each seen DRAWS times with fresh noise; ROW: 1 to 8, 0 for all.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -86,6 +86,9 @@ class Bench {
 
   const Arrangement& arrangement() const { return arrangement_; }
 
+  // By default or not at all.
+  void AllowForModelErrors(bool allow) { model_errors_ = allow; }
+
   std::vector<Eigen::Vector3d> Seen(const std::vector<AppliedForce>& forces) {
     if (!truth_solver_->Solve(validation::LoadOf(truth_, forces, told_), &state_).ok()) {
       state_ = truth_solver_->AtRest();
@@ -124,6 +127,9 @@ class Bench {
     estimation::LocationOptions options;
     options.method = method;
     options.patch = validation::kPatch;
+    if (!model_errors_) {
+      options.estimator.common_model_error = options.estimator.local_model_error = 0;
+    }
     return {solver_.get(), given_.surface, candidates, options};
   }
 
@@ -142,7 +148,10 @@ class Bench {
   fem::Actuation told_;
   std::unique_ptr<fem::StaticSolver> truth_solver_, solver_;
   fem::Equilibrium state_;
+  bool model_errors_ = true;
 };
+
+constexpr double kSure = 0.99;  // probability from which an answer is taken to be without doubt
 
 double Median(std::vector<double> values) {
   if (values.empty()) return NAN;
@@ -199,7 +208,7 @@ void StudySets(Bench* bench, const std::string& name, double sigma, bool push, i
   std::mt19937 random(7);
   const auto direction =
       push ? estimation::ForceDirection::kPush : estimation::ForceDirection::kFree;
-  int trials = 0, right = 0, wrong = 0, said = 0, lost = 0;
+  int trials = 0, right = 0, wrong = 0, said = 0, lost = 0, sure = 0, right_and_sure = 0;
   std::vector<double> errors, oracle;
   for (int l = 0; l < loads; ++l) {
     const Load load = DrawLoad(*bench, push, &random);
@@ -217,15 +226,14 @@ void StudySets(Bench* bench, const std::string& name, double sigma, bool push, i
         continue;
       }
       std::set<int> found;
-      bool ambiguous = false;
-      for (const LocatedForce& force : estimate.forces) {
-        found.insert(force.candidate);
-        ambiguous |= !force.alternatives.empty();
-      }
+      for (const LocatedForce& force : estimate.forces) found.insert(force.candidate);
+      const bool is_sure = estimate.probability >= kSure;
+      sure += is_sure;
       if (found == load.loaded) {
         ++right;
+        right_and_sure += is_sure;
       } else {
-        ++(ambiguous ? said : wrong);
+        ++(is_sure ? wrong : said);
       }
       errors.push_back(ErrorOf(estimate.forces, *bench, load));
       if (known.ok()) oracle.push_back(ErrorOf(known.forces, *bench, load));
@@ -234,17 +242,18 @@ void StudySets(Bench* bench, const std::string& name, double sigma, bool push, i
   double mean = 0, mean_oracle = 0;
   for (const double e : errors) mean += e / static_cast<double>(errors.size());
   for (const double e : oracle) mean_oracle += e / static_cast<double>(oracle.size());
-  fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {} | {:.1f} | {:.1f} | {:.2f} |\n",
-             name, push ? "push" : "free", 1e3 * sigma, 100.0 * right / trials,
-             100.0 * said / trials, 100.0 * wrong / trials, lost, 1e3 * mean, 1e3 * mean_oracle,
-             mean / mean_oracle);
+  fmt::print(
+      "| {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} | {:.1f} | {:.1f} | "
+      "{:.2f} |\n",
+      name, push ? "push" : "free", 1e3 * sigma, 100.0 * right / trials, 100.0 * said / trials,
+      100.0 * wrong / trials, 100.0 * sure / trials, 100.0 * right_and_sure / std::max(sure, 1),
+      lost, 1e3 * mean, 1e3 * mean_oracle, mean / mean_oracle);
   std::fflush(stdout);
 }
 
 // One force anywhere between the candidates: how far off it is found, beside what the noise alone
 // allows, and how often its 95 % region holds it.
-void StudyPlaces(Bench* bench, const std::string& name, double sigma, bool push, int loads,
-                 int draws) {
+void StudyPlaces(Bench* bench, bool model_errors, double sigma, bool push, int loads, int draws) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> x(0.04, 0.16), y(0.05, 0.15), strength(0.3, 0.6);
   const auto direction =
@@ -277,10 +286,10 @@ void StudyPlaces(Bench* bench, const std::string& name, double sigma, bool push,
       floors.push_back((L * Eigen::Vector2d(normal(random), normal(random))).norm());
     }
   }
-  fmt::print("| {} | {} | {:.2f} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} |\n", name,
-             push ? "push" : "free", 1e3 * sigma, trials, 100.0 * one / trials,
-             1e3 * Median(errors), 1e3 * Median(floors), Median(errors) / Median(floors),
-             100.0 * covered / std::max(one, 1));
+  fmt::print("| sheet | {} | {:.2f} | {} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} |\n",
+             push ? "push" : "free", 1e3 * sigma, model_errors ? "default" : "none", trials,
+             100.0 * one / trials, 1e3 * Median(errors), 1e3 * Median(floors),
+             Median(errors) / Median(floors), 100.0 * covered / std::max(one, 1));
   std::fflush(stdout);
 }
 
@@ -289,27 +298,33 @@ void StudyPlaces(Bench* bench, const std::string& name, double sigma, bool push,
 int main(int argc, char** argv) {
   const int loads = argc > 1 ? std::atoi(argv[1]) : 60;
   const int draws = argc > 2 ? std::atoi(argv[2]) : 9;
+  const int only = argc > 3 ? std::atoi(argv[3]) : 0;
   const std::filesystem::path meshes =
-      argc > 3 ? argv[3] : std::string(SOFTFORCE_SOURCE_DIR) + "/meshes";
+      argc > 4 ? argv[4] : std::string(SOFTFORCE_SOURCE_DIR) + "/meshes";
   if (loads < 1 || draws < 1) {
     fmt::print(stderr, "location_study: got \"{}\", expected numbers of loads and draws\n",
                argv[1]);
     return 2;
   }
   Bench sheet(OnSheet(), meshes), robot(OnRobot(), meshes);
+  int row = 0;
+  const auto wanted = [&] { return ++row == only || only == 0; };
   fmt::print(
-      "| loaded candidates | directions | noise, mm | right set, % | other set, ambiguity said, % "
-      "| wrong set, % | lost | force error, mN | told which, mN | ratio |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n");
-  StudySets(&sheet, "sheet, 12, 14 markers", 1e-4, false, loads, draws);
-  StudySets(&robot, "robot, 8, 9 markers", 1e-4, false, loads, draws);
-  StudySets(&sheet, "sheet, 12, 14 markers", 5e-5, false, loads, draws);
-  StudySets(&sheet, "sheet, 12, 14 markers", 5e-5, true, loads, draws);
+      "| loaded candidates | directions | noise, mm | right set, % | other set, doubt said, % | "
+      "other set, not said, % | sure, % | of these right, % | lost | force error, mN | told which, "
+      "mN | ratio |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  if (wanted()) StudySets(&sheet, "sheet, 12, 14 markers", 1e-4, false, loads, draws);
+  if (wanted()) StudySets(&robot, "robot, 8, 9 markers", 1e-4, false, loads, draws);
+  if (wanted()) StudySets(&sheet, "sheet, 12, 14 markers", 5e-5, false, loads, draws);
+  if (wanted()) StudySets(&sheet, "sheet, 12, 14 markers", 5e-5, true, loads, draws);
   fmt::print(
-      "\n| one force between candidates | directions | noise, mm | trials | one found, % | median "
-      "error, mm | floor, mm | ratio | in its 95 % region, % "
-      "|\n|---|---|---|---|---|---|---|---|---|\n");
-  StudyPlaces(&sheet, "sheet", 5e-5, false, loads, draws);
-  StudyPlaces(&sheet, "sheet", 5e-5, true, loads, draws);
+      "\n| one force between candidates | directions | noise, mm | model errors | trials | one "
+      "found, % | median error, mm | floor, mm | ratio | in its 95 % region, % "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const bool model_errors : {true, false}) {
+    sheet.AllowForModelErrors(model_errors);
+    if (wanted()) StudyPlaces(&sheet, model_errors, 5e-5, false, loads, draws);
+    if (wanted()) StudyPlaces(&sheet, model_errors, 5e-5, true, loads, draws);
+  }
   return 0;
 }

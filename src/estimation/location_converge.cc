@@ -23,6 +23,7 @@ constexpr int kMaxHalvings = 6;
 // step is not shorter than this share of the one before.
 constexpr double kSlow = 0.5;
 constexpr double kNearEquilibrium = 1e-5;  // of the diagonal, see ForceEstimator
+constexpr double kDoubt = 0.01;            // probability of another candidate that is worth saying
 // Squared cosine: unknowns of which one is the others' shadow to this share cannot be told apart.
 constexpr double kLeastEigenvalue = 1e-9;
 
@@ -33,6 +34,10 @@ LocationEstimate Failed(LocationEstimate estimate, Status status, std::string re
   estimate.reason = std::move(reason);
   estimate.forces.clear();
   return estimate;
+}
+
+bool Contains(const std::vector<int>& numbers, int number) {
+  return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
 }
 
 bool SameStructure(const std::vector<TrialForce>& a, const std::vector<TrialForce>& b) {
@@ -52,6 +57,7 @@ struct LocationEstimator::State::Round {
   double sd = INFINITY;  // m, the smallest of an observation's coordinates
   double slack = 0;      // m, that the linear answer may be wrong by
   bool renew = false;    // compute the response where the body stands
+  Rivals rivals;
 };
 
 bool LocationEstimator::State::Explain(const std::vector<Observation>& observations, bool search,
@@ -86,7 +92,7 @@ bool LocationEstimator::State::Explain(const std::vector<Observation>& observati
     round->points = Linearise(round->used, observations);
     round->forces = from;
     if (search) {
-      round->forces = Search(round->points, from, &round->chi2);
+      round->forces = Search(round->points, from, &round->chi2, &round->rivals);
     } else {
       round->chi2 = Refine(round->points, &round->forces);
     }
@@ -239,42 +245,41 @@ int LocationEstimator::State::NearestCandidate(const Eigen::Vector3d& place) con
   return nearest;
 }
 
-void LocationEstimator::State::FindAlternatives(const LinearisedPoints& points,
-                                                const std::vector<TrialForce>& trials,
-                                                std::vector<LocatedForce>* located) const {
+void LocationEstimator::State::FindAlternatives(const Round& round,
+                                                LocationEstimate* estimate) const {
   constexpr double kProbability = 0.95;
   if (moves()) {
-    // Candidates within the region in which the place lies.
-    for (LocatedForce& force : *located) {
-      for (size_t c = 0; c < candidates.size(); ++c) {
-        if (static_cast<int>(c) == force.candidate) continue;
+    // Candidates within the region in which the place lies, and on other faces.
+    for (size_t j = 0; j < estimate->forces.size(); ++j) {
+      LocatedForce& force = estimate->forces[j];
+      if (j < round.rivals.elsewhere.size()) force.alternatives = round.rivals.elsewhere[j];
+      for (int c = 0; c < static_cast<int>(candidates.size()); ++c) {
+        if (c == force.candidate || Contains(force.alternatives, c)) continue;
+        if (FaceOf(candidates[c].at) != FaceOf(force.at)) continue;
         const Eigen::Vector2d apart =
             force.tangents.transpose() * (candidate_places[c] - force.rest);
         const double distance2 = apart.dot(force.location_covariance.ldlt().solve(apart));
         if (distance2 <= geometry::ChiSquareQuantile(kProbability, 2)) {
-          force.alternatives.push_back(static_cast<int>(c));
+          force.alternatives.push_back(c);
         }
       }
     }
+    estimate->probability = 1 / (1 + round.rivals.odds);
     return;
   }
-  const SubsetSearch search(AtCandidates(points));
-  std::vector<int> groups;
-  for (const TrialForce& trial : trials) groups.push_back(trial.candidate);
-  std::sort(groups.begin(), groups.end());
-  const double chi2 = search.Fit(groups).chi2;
-  // As if one continuous unknown led from the one to the other: the logarithm of the likelihoods'
-  // ratio beyond which it is a certain choice.
-  const double least = geometry::ChiSquareQuantile(1 - options.false_alarm, 1);
-  for (LocatedForce& force : *located) {
+  // Candidates that may be loaded instead.
+  const SubsetOdds odds = SubsetSearch(AtCandidates(round.points)).Weigh(options.max_forces);
+  for (LocatedForce& force : estimate->forces) {
+    std::vector<double> instead(candidates.size(), 0);
+    for (const WeighedSubset& subset : odds.likely) {
+      if (Contains(subset.groups, force.candidate)) continue;
+      for (const int c : subset.groups) instead[c] += subset.probability;
+    }
     for (int c = 0; c < static_cast<int>(candidates.size()); ++c) {
-      if (std::find(groups.begin(), groups.end(), c) != groups.end()) continue;
-      std::vector<int> exchanged = groups;
-      std::replace(exchanged.begin(), exchanged.end(), force.candidate, c);
-      std::sort(exchanged.begin(), exchanged.end());
-      if (search.Fit(exchanged).chi2 - chi2 < least) force.alternatives.push_back(c);
+      if (!Contains(odds.best.groups, c) && instead[c] >= kDoubt) force.alternatives.push_back(c);
     }
   }
+  estimate->probability = odds.probability();
 }
 
 void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate) {
@@ -288,7 +293,7 @@ void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate)
     return;
   }
   if (options.method != LocationMethod::kThreshold) {
-    FindAlternatives(round.points, round.forces, &estimate->forces);
+    FindAlternatives(round, estimate);
   }
   estimate->status = Status::kOk;
   estimate->chi2 = round.chi2;

@@ -1,6 +1,7 @@
 // How many forces there are, and near which candidates.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "estimation/location_state.h"
@@ -9,10 +10,14 @@
 namespace softforce::estimation {
 namespace {
 
-constexpr int kMaxChanges = 12;       // of the number of forces in one search
-constexpr size_t kTriedStarts = 3;    // candidates from which a new force is tried
-constexpr double kImprobable = 1e-3;  // a residual that large comes by chance this often
-constexpr double kNeighbours = 1.5;   // candidate spacings
+constexpr int kMaxChanges = 12;        // of the number of forces in one search
+constexpr size_t kTriedStarts = 3;     // candidates from which a new force is tried
+constexpr double kImprobable = 1e-3;   // a residual that large comes by chance this often
+constexpr double kNeighbours = 1.5;    // candidate spacings
+constexpr double kWorthSaying = 1e-2;  // odds
+
+// Of an answer that costs `cost` to one that costs `least`: by χ² and prices.
+double Odds(double cost, double least) { return std::exp((least - cost) / 2); }
 
 }  // namespace
 
@@ -54,13 +59,7 @@ std::vector<TrialForce> LocationEstimator::State::ForcesOf(const Subset& subset)
 
 std::vector<TrialForce> LocationEstimator::State::Likeliest(const LinearisedPoints& points,
                                                             double* chi2) const {
-  std::vector<double> price;
-  for (const PlacedPatch& placed : candidate_patches) {
-    TrialForce trial;
-    trial.intensity = Eigen::VectorXd::Zero(placed.directions.cols());
-    price.push_back(Price(trial));
-  }
-  const Subset best = SubsetSearch(AtCandidates(points)).Best(options.max_forces, price);
+  const Subset best = SubsetSearch(AtCandidates(points)).Weigh(options.max_forces).best;
   *chi2 = best.chi2;
   return ForcesOf(best);
 }
@@ -72,7 +71,8 @@ double LocationEstimator::State::Refine(const LinearisedPoints& points,
 }
 
 bool LocationEstimator::State::Prune(const LinearisedPoints& points,
-                                     std::vector<TrialForce>* trials, double* chi2) const {
+                                     std::vector<TrialForce>* trials, double* chi2,
+                                     Rivals* rivals) const {
   // Of two that explain the same, the one that stays where it is keeps its identity.
   constexpr double kPriceOfMoving = 10;  // of χ², per diagonal
   const double before = Total(*chi2, *trials);
@@ -84,7 +84,10 @@ bool LocationEstimator::State::Prune(const LinearisedPoints& points,
     std::vector<TrialForce> refined = without;
     const double chi2_without = Refine(points, &refined);
     const double total = Total(chi2_without, refined);
-    if (!(total < before)) continue;
+    if (!(total < before)) {
+      rivals->odds += Odds(total, before);
+      continue;
+    }
     double moved = 0;
     for (size_t i = 0; i < refined.size(); ++i) {
       moved += (faces.walk().Position(refined[i].at) - faces.walk().Position(without[i].at)).norm();
@@ -101,7 +104,7 @@ bool LocationEstimator::State::Prune(const LinearisedPoints& points,
 }
 
 bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<TrialForce>* trials,
-                                    double* chi2) const {
+                                    double* chi2, Rivals* rivals) const {
   if (static_cast<int>(trials->size()) >= options.max_forces) return false;
   // What a force at each candidate would explain, those at hand giving way.
   const LocationResidual at = Evaluate(points, faces, candidates, *trials);
@@ -124,7 +127,8 @@ bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<
   }
   std::sort(starts.begin(), starts.end());
   if (starts.size() > kTriedStarts) starts.resize(kTriedStarts);
-  double least = Total(*chi2, *trials);
+  const double before = Total(*chi2, *trials);
+  double least = before, nearest = INFINITY;
   std::vector<TrialForce> best;
   for (const auto& [there, c] : starts) {
     TrialForce added;
@@ -133,15 +137,61 @@ bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<
     added.intensity = Eigen::VectorXd::Zero(candidate_patches[c].directions.cols());
     std::vector<TrialForce> grown = *trials;
     grown.push_back(added);
+    nearest = std::min(nearest, Total(there, grown));
     // Moving may help, but hardly more than to halve what a fixed place leaves over the price.
     if (!(there + 0.5 * Price(added) < *chi2)) continue;
     if (!std::isfinite(FitIntensities(points, faces, candidates, &grown))) continue;
     const double chi2_grown = Refine(points, &grown);
     const double total = Total(chi2_grown, grown);
+    nearest = std::min(nearest, total);
     if (!(total < least)) continue;
     least = total;
     best = grown;
     *chi2 = chi2_grown;
+  }
+  if (best.empty()) {
+    rivals->odds += Odds(nearest, before);
+    return false;
+  }
+  *trials = best;
+  return true;
+}
+
+bool LocationEstimator::State::ChangeFace(const LinearisedPoints& points,
+                                          std::vector<TrialForce>* trials, double* chi2,
+                                          Rivals* rivals) const {
+  rivals->elsewhere.assign(trials->size(), {});
+  const double before = Total(*chi2, *trials);
+  double least = before;
+  std::vector<TrialForce> best;
+  for (size_t j = 0; j < trials->size(); ++j) {
+    // The candidate nearest to it on each other face.
+    const Eigen::Vector3d place = faces.walk().Position((*trials)[j].at);
+    std::map<int, int> nearest;  // by face
+    for (int c = 0; c < static_cast<int>(candidates.size()); ++c) {
+      const int face = FaceOf(candidates[c].at);
+      if (face == FaceOf((*trials)[j].at)) continue;
+      const auto at = nearest.emplace(face, c).first;
+      if ((candidate_places[c] - place).norm() < (candidate_places[at->second] - place).norm()) {
+        at->second = c;
+      }
+    }
+    for (const auto& [face, c] : nearest) {
+      std::vector<TrialForce> other = *trials;
+      other[j].candidate = c;
+      other[j].at = candidates[c].at;
+      other[j].intensity = Eigen::VectorXd::Zero(candidate_patches[c].directions.cols());
+      if (!std::isfinite(FitIntensities(points, faces, candidates, &other))) continue;
+      const double chi2_other = Refine(points, &other);
+      const double total = Total(chi2_other, other);
+      const double odds = Odds(total, before);
+      rivals->odds += odds;
+      if (odds >= kWorthSaying) rivals->elsewhere[j].push_back(c);
+      if (!(total < least)) continue;
+      least = total;
+      best = other;
+      *chi2 = chi2_other;
+    }
   }
   if (best.empty()) return false;
   *trials = best;
@@ -191,29 +241,57 @@ std::vector<TrialForce> LocationEstimator::State::Survivors(const LinearisedPoin
   return merged;
 }
 
+std::vector<TrialForce> LocationEstimator::State::SearchFrom(const LinearisedPoints& points,
+                                                             std::vector<TrialForce> trials,
+                                                             double* chi2, Rivals* rivals) const {
+  *chi2 = Refine(points, &trials);
+  for (int change = 0; change < kMaxChanges; ++change) {
+    *rivals = {};
+    if (!Prune(points, &trials, chi2, rivals) && !Grow(points, &trials, chi2, rivals) &&
+        !ChangeFace(points, &trials, chi2, rivals)) {
+      break;
+    }
+  }
+  return trials;
+}
+
+// Whether as many forces act near the same candidates.
+bool LocationEstimator::State::SameAnswer(const std::vector<TrialForce>& a,
+                                          const std::vector<TrialForce>& b) const {
+  const auto near = [this](const std::vector<TrialForce>& trials) {
+    std::multiset<int> nearest;
+    for (const TrialForce& trial : trials) {
+      nearest.insert(NearestCandidate(faces.walk().Position(trial.at)));
+    }
+    return nearest;
+  };
+  return near(a) == near(b);
+}
+
 std::vector<TrialForce> LocationEstimator::State::Search(const LinearisedPoints& points,
                                                          const std::vector<TrialForce>& from,
-                                                         double* chi2) const {
+                                                         double* chi2, Rivals* rivals) const {
   if (options.method == LocationMethod::kThreshold) return Survivors(points, chi2);
   if (options.method == LocationMethod::kCandidates) return Likeliest(points, chi2);
-  const auto settle = [&](std::vector<TrialForce>* trials, double* there) {
-    *there = Refine(points, trials);
-    for (int change = 0; change < kMaxChanges; ++change) {
-      if (!Prune(points, trials, there) && !Grow(points, trials, there)) break;
-    }
-  };
-  std::vector<TrialForce> best = from;
-  settle(&best, chi2);
+  const std::vector<TrialForce> best = SearchFrom(points, from, chi2, rivals);
   int unknowns = 0;
   for (const TrialForce& trial : best) unknowns += static_cast<int>(trial.intensity.size()) + 2;
   const int freedom = std::max(1, static_cast<int>(points.b.size()) - unknowns);
   const bool plausible = *chi2 <= geometry::ChiSquareQuantile(1 - kImprobable, freedom);
   if (!from.empty() && plausible) return best;
   double chi2_anew = INFINITY;
-  std::vector<TrialForce> anew = Likeliest(points, &chi2_anew);
-  settle(&anew, &chi2_anew);
-  if (!(Total(chi2_anew, anew) < Total(*chi2, best))) return best;
+  Rivals rivals_anew;
+  const std::vector<TrialForce> anew =
+      SearchFrom(points, Likeliest(points, &chi2_anew), &chi2_anew, &rivals_anew);
+  const double cost = Total(*chi2, best), cost_anew = Total(chi2_anew, anew);
+  const bool same = SameAnswer(best, anew);
+  if (!(cost_anew < cost)) {
+    if (!same) rivals->odds += Odds(cost_anew, cost);
+    return best;
+  }
   *chi2 = chi2_anew;
+  *rivals = rivals_anew;
+  if (!same) rivals->odds += Odds(cost, cost_anew);
   return anew;
 }
 

@@ -36,17 +36,32 @@ struct LocationEstimator::State {
               const LocationResidual& at) const;
 
   // --- How many forces, and where.
+  // What speaks for other answers than the one at hand.
+  struct Rivals {
+    double odds = 0;  // how much likelier than it they are, all together
+    // Per force: candidates on other faces, at which it explains nearly the same.
+    std::vector<std::vector<int>> elsewhere;
+  };
   double Price(const TrialForce& force) const;  // by which χ² has to fall for it
   double Total(double chi2, const std::vector<TrialForce>& forces) const;
   GroupedProblem AtCandidates(const LinearisedPoints& points) const;
   std::vector<TrialForce> ForcesOf(const Subset& subset) const;
   std::vector<TrialForce> Likeliest(const LinearisedPoints& points, double* chi2) const;
-  // The likeliest forces, from those at hand; sets χ².
+  // The likeliest forces, from those at hand; sets χ² and what speaks against them.
   std::vector<TrialForce> Search(const LinearisedPoints& points,
-                                 const std::vector<TrialForce>& from, double* chi2) const;
+                                 const std::vector<TrialForce>& from, double* chi2,
+                                 Rivals* rivals) const;
+  std::vector<TrialForce> SearchFrom(const LinearisedPoints& points, std::vector<TrialForce> from,
+                                     double* chi2, Rivals* rivals) const;
+  bool SameAnswer(const std::vector<TrialForce>& a, const std::vector<TrialForce>& b) const;
   double Refine(const LinearisedPoints& points, std::vector<TrialForce>* forces) const;
-  bool Prune(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2) const;
-  bool Grow(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2) const;
+  // Each makes the forces likelier by one kind of change if it can; if not, it adds to the rivals.
+  bool Prune(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
+             Rivals* rivals) const;
+  bool Grow(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
+            Rivals* rivals) const;
+  bool ChangeFace(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
+                  Rivals* rivals) const;
   std::vector<TrialForce> Survivors(const LinearisedPoints& points, double* chi2) const;
   // Gives them the identities of those of `before` that are nearest, new ones to the others.
   void Identify(const std::vector<TrialForce>& before, std::vector<TrialForce>* forces);
@@ -61,8 +76,8 @@ struct LocationEstimator::State {
   // Places, forces and their covariances; false if they are not determined, with the culprit.
   bool Describe(const LinearisedPoints& points, const std::vector<TrialForce>& forces,
                 std::vector<LocatedForce>* located, std::string* culprit) const;
-  void FindAlternatives(const LinearisedPoints& points, const std::vector<TrialForce>& forces,
-                        std::vector<LocatedForce>* located) const;
+  void FindAlternatives(const Round& round, LocationEstimate* estimate) const;
+  int FaceOf(const mesh::SurfacePoint& at) const { return faces.walk().region()[at.triangle]; }
   int NearestCandidate(const Eigen::Vector3d& place) const;
 
   bool moves() const { return options.method == LocationMethod::kContinuous; }

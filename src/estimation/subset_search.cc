@@ -1,7 +1,11 @@
 #include "estimation/subset_search.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <numeric>
 
 namespace softforce::estimation {
@@ -10,16 +14,52 @@ namespace {
 constexpr double kMaxTried = 5000;  // subsets: beyond it a few milliseconds become many
 // Of a pivot to the diagonal it began as: two candidates of which one is the other's shadow.
 constexpr double kLeastPivot = 1e-9;
+constexpr double kHopeless = 60;  // of −2 log evidence: e⁻³⁰ times as likely as the likeliest
+constexpr double kUnlikely = 1e-6;
+
+double LogBinomial(int n, int k) {
+  return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
+}
 
 double CountSubsets(int n, int most) {
-  double count = 0, choices = 1;
-  for (int k = 1; k <= most; ++k) count += choices = choices * (n - k + 1) / k;
+  double count = 0;
+  for (int k = 0; k <= most; ++k) count += std::exp(LogBinomial(n, k));
   return count;
 }
 
-double Total(const std::vector<int>& groups, const std::vector<double>& price) {
-  return std::accumulate(groups.begin(), groups.end(), 0.0,
-                         [&](double sum, int group) { return sum + price[group]; });
+// All ascending subsets of at most `most` of n groups.
+void ForEachSubset(int n, int most, std::vector<int>* chosen,
+                   const std::function<void(const std::vector<int>&)>& visit) {
+  visit(*chosen);
+  if (static_cast<int>(chosen->size()) == most) return;
+  for (int group = chosen->empty() ? 0 : chosen->back() + 1; group < n; ++group) {
+    chosen->push_back(group);
+    ForEachSubset(n, most, chosen, visit);
+    chosen->pop_back();
+  }
+}
+
+// Those that differ by one group more, less or other.
+std::vector<std::vector<int>> Neighbours(const std::vector<int>& groups, int n, int most) {
+  std::vector<std::vector<int>> neighbours;
+  for (int group = 0; group < n; ++group) {
+    if (std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
+    for (size_t i = 0; i <= groups.size(); ++i) {
+      std::vector<int> other = groups;
+      if (i < groups.size()) {
+        other[i] = group;
+      } else if (static_cast<int>(groups.size()) < most) {
+        other.push_back(group);
+      }
+      std::sort(other.begin(), other.end());
+      neighbours.push_back(std::move(other));
+    }
+  }
+  for (size_t i = 0; i < groups.size(); ++i) {
+    neighbours.push_back(groups);
+    neighbours.back().erase(neighbours.back().begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return neighbours;
 }
 
 }  // namespace
@@ -37,6 +77,14 @@ SubsetSearch::SubsetSearch(const GroupedProblem& problem)
   g_ = A.transpose() * problem.b;
 }
 
+std::vector<int> SubsetSearch::Unknowns(const std::vector<int>& groups) const {
+  std::vector<int> index;
+  for (const int group : groups) {
+    for (int i = first_[group]; i < first_[group + 1]; ++i) index.push_back(i);
+  }
+  return index;
+}
+
 Subset SubsetSearch::Fit(const std::vector<int>& groups) const {
   Subset subset;
   subset.groups = groups;
@@ -44,10 +92,7 @@ Subset SubsetSearch::Fit(const std::vector<int>& groups) const {
     subset.chi2 = bb_;
     return subset;
   }
-  std::vector<int> index;
-  for (const int group : groups) {
-    for (int i = first_[group]; i < first_[group + 1]; ++i) index.push_back(i);
-  }
+  const std::vector<int> index = Unknowns(groups);
   const Eigen::MatrixXd G = G_(index, index);
   const Eigen::VectorXd scale = G.diagonal().cwiseSqrt().cwiseInverse();
   if (!scale.allFinite()) return subset;
@@ -68,70 +113,91 @@ Subset SubsetSearch::Fit(const std::vector<int>& groups) const {
   return subset;
 }
 
-void SubsetSearch::TryAll(int most, const std::vector<double>& price, std::vector<int>* chosen,
-                          Subset* best, double* least) const {
-  Subset subset = Fit(*chosen);
-  const double total = subset.chi2 + Total(*chosen, price);
-  if (total < *least) {
-    *least = total;
-    *best = std::move(subset);
+// Standard deviations of an unknown, each three times the one before.
+std::vector<double> SubsetSearch::Scales() const {
+  constexpr double kStep = 3;
+  constexpr double kClear = 10;  // of the noise: weaker ones are not expected, or noise finds them
+  double hidden = INFINITY, whole = 0;
+  for (Eigen::Index i = 0; i < g_.size(); ++i) {
+    if (!(G_(i, i) > 0)) continue;
+    hidden = std::min(hidden, 1 / std::sqrt(G_(i, i)));
+    whole = std::max(whole, std::sqrt(bb_ / G_(i, i)));
   }
-  if (static_cast<int>(chosen->size()) == most) return;
-  const int n = static_cast<int>(push_.size());
-  for (int group = chosen->empty() ? 0 : chosen->back() + 1; group < n; ++group) {
-    chosen->push_back(group);
-    TryAll(most, price, chosen, best, least);
-    chosen->pop_back();
+  std::vector<double> scales;
+  for (double scale = kClear * hidden; scales.empty() || scale < whole; scale *= kStep) {
+    scales.push_back(scale);
   }
+  return scales;
 }
 
-Subset SubsetSearch::Best(int most, const std::vector<double>& price) const {
-  const int n = static_cast<int>(push_.size());
+double SubsetSearch::MinusTwiceLogEvidence(const Subset& fit,
+                                           const std::vector<double>& scales) const {
+  if (fit.groups.empty()) return bb_;
+  const std::vector<int> index = Unknowns(fit.groups);
+  const Eigen::MatrixXd G = G_(index, index);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(G);
+  const Eigen::ArrayXd along = (axes.eigenvectors().transpose() * g_(index)).array().square();
+  const Eigen::ArrayXd stiffness = axes.eigenvalues().array().max(0);
+  Eigen::ArrayXd cost(static_cast<Eigen::Index>(scales.size()));
+  for (size_t j = 0; j < scales.size(); ++j) {
+    const double variance = scales[j] * scales[j];
+    cost(static_cast<Eigen::Index>(j)) =
+        bb_ - (along / (stiffness + 1 / variance)).sum() + (1 + variance * stiffness).log().sum();
+  }
+  const double least = cost.minCoeff();
+  double total = least - 2 * std::log(((least - cost) / 2).exp().mean());
+  for (const int group : fit.groups) {
+    if (push_[group]) total -= 2 * size(group) * std::log(2.0);  // half of a normal distribution
+  }
+  return total + 2 * LogBinomial(num_groups(), static_cast<int>(fit.groups.size()));
+}
+
+SubsetOdds SubsetSearch::Weigh(int most) const {
+  const int n = num_groups();
   most = std::min(most, n);
-  if (CountSubsets(n, most) > kMaxTried) return Grown(most, price);
-  Subset best;
-  double least = std::numeric_limits<double>::infinity();
-  std::vector<int> chosen;
-  TryAll(most, price, &chosen, &best, &least);
-  return best;
-}
-
-Subset SubsetSearch::Grown(int most, const std::vector<double>& price) const {
-  const int n = static_cast<int>(push_.size());
-  Subset best = Fit({});
-  double least = best.chi2;
-  const auto consider = [&](std::vector<int> groups) {
-    std::sort(groups.begin(), groups.end());
-    if (std::adjacent_find(groups.begin(), groups.end()) != groups.end()) return false;
-    Subset subset = Fit(groups);
-    const double total = subset.chi2 + Total(groups, price);
-    if (!(total < least)) return false;
-    least = total;
-    best = std::move(subset);
+  const std::vector<double> scales = Scales();
+  std::map<std::vector<int>, double> costs;
+  double least = INFINITY;
+  std::vector<int> best;
+  const auto weigh = [&](const Subset& fit) {
+    // χ² is the least that the evidence can cost.
+    const double cost = fit.chi2 < least + kHopeless ? MinusTwiceLogEvidence(fit, scales)
+                                                     : std::numeric_limits<double>::infinity();
+    costs[fit.groups] = cost;
+    if (!(cost < least)) return false;
+    least = cost;
+    best = fit.groups;
     return true;
   };
-  for (bool better = true; better;) {
-    better = false;
-    const std::vector<int> from = best.groups;
-    for (int group = 0; group < n && static_cast<int>(from.size()) < most; ++group) {
-      std::vector<int> grown = from;
-      grown.push_back(group);
-      better |= consider(grown);
-    }
-    for (size_t i = 0; i < from.size() && !better; ++i) {
-      for (int group = 0; group < n; ++group) {
-        std::vector<int> exchanged = from;
-        exchanged[i] = group;
-        better |= consider(exchanged);
+  if (CountSubsets(n, most) <= kMaxTried) {
+    std::vector<Subset> fits;
+    std::vector<int> chosen;
+    ForEachSubset(n, most, &chosen,
+                  [&](const std::vector<int>& groups) { fits.push_back(Fit(groups)); });
+    std::stable_sort(fits.begin(), fits.end(),
+                     [](const Subset& a, const Subset& b) { return a.chi2 < b.chi2; });
+    for (const Subset& fit : fits) weigh(fit);
+  } else {
+    weigh(Fit({}));
+    for (bool better = true; better;) {
+      better = false;
+      for (const std::vector<int>& groups : Neighbours(best, n, most)) {
+        if (costs.count(groups) == 0) better |= weigh(Fit(groups));
       }
     }
-    for (size_t i = 0; i < from.size() && !better; ++i) {
-      std::vector<int> fewer = from;
-      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-      better |= consider(fewer);
-    }
   }
-  return best;
+  SubsetOdds odds;
+  odds.best = Fit(best);
+  double sum = 0;
+  for (const auto& [groups, cost] : costs) sum += std::exp((least - cost) / 2);
+  for (const auto& [groups, cost] : costs) {
+    const double probability = std::exp((least - cost) / 2) / sum;
+    if (probability >= kUnlikely) odds.likely.push_back({groups, probability});
+  }
+  std::stable_sort(
+      odds.likely.begin(), odds.likely.end(),
+      [](const WeighedSubset& a, const WeighedSubset& b) { return a.probability > b.probability; });
+  return odds;
 }
 
 Subset SubsetSearch::Threshold(double share) const {

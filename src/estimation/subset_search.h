@@ -19,6 +19,18 @@ struct Subset {
   double chi2 = std::numeric_limits<double>::infinity();
 };
 
+// What the data say of which groups act.
+struct WeighedSubset {
+  std::vector<int> groups;  // ascending
+  double probability;       // that it is just these
+};
+struct SubsetOdds {
+  Subset best;
+  std::vector<WeighedSubset> likely;  // likeliest first, down to a millionth
+
+  double probability() const { return likely.empty() ? 0 : likely.front().probability; }
+};
+
 // Normal equations of all groups, from which those of any subset are taken.
 class SubsetSearch {
  public:
@@ -27,17 +39,22 @@ class SubsetSearch {
   // Least squares over given groups; χ² infinite if they cannot be told apart or would pull.
   Subset Fit(const std::vector<int>& groups) const;
 
-  // The subset of at most `most` groups that minimises χ² + Σ price_g: every one is tried if they
-  // are few, else the best one is grown, and exchanged member by member.
-  Subset Best(int most, const std::vector<double>& price) const;
+  // Bayes' rule over the subsets of at most `most` groups. Beforehand every number of groups is
+  // held to be as likely as another, and so is every subset of that number; the unknowns of a
+  // subset are normal with one standard deviation, of which only its order of magnitude is known:
+  // between what the noise hides and what the whole of b would ask for. Every subset is tried if
+  // they are few, else those around the likeliest one that growing, exchanging and dropping of
+  // groups finds.
+  SubsetOdds Weigh(int most) const;
 
   // All groups, less those whose intensity is below a share of the largest, until none is.
   Subset Threshold(double share) const;
 
  private:
-  Subset Grown(int most, const std::vector<double>& price) const;
-  void TryAll(int most, const std::vector<double>& price, std::vector<int>* chosen, Subset* best,
-              double* least) const;
+  std::vector<int> Unknowns(const std::vector<int>& groups) const;
+  std::vector<double> Scales() const;
+  double MinusTwiceLogEvidence(const Subset& fit, const std::vector<double>& scales) const;
+  int num_groups() const { return static_cast<int>(push_.size()); }
   int size(int group) const { return first_[group + 1] - first_[group]; }
 
   std::vector<int> first_;  // unknown of each group

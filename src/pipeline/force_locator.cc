@@ -76,6 +76,9 @@ std::vector<ForceResult> ForceLocator::Results(const estimation::LocationEstimat
     result.covariance = force.covariance;
     result.place_covariance =
         force.tangents * force.location_covariance * force.tangents.transpose();
+    for (const int c : force.alternatives) {
+      result.alternatives.push_back(scene_.forces.candidates[c].id);
+    }
     results.push_back(result);
   }
   return results;

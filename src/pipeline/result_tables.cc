@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "softforce/base/input_error.h"
+#include "softforce/geometry/chi_square.h"
 
 namespace softforce::pipeline {
 namespace {
@@ -44,7 +46,7 @@ void PendingTable::Commit() {
   file_.Commit();
 }
 
-ResultTables::ResultTables(const std::filesystem::path& folder, ActuatorKinds kinds)
+ResultTables::ResultTables(const std::filesystem::path& folder, TableKinds kinds)
     : forces_(folder / "forces.csv",
               "frame,time_s,force,candidate,status,x_mm,y_mm,z_mm,rest_x_mm,rest_y_mm,rest_z_mm,fx_"
               "N,fy_N,"
@@ -54,6 +56,11 @@ ResultTables::ResultTables(const std::filesystem::path& folder, ActuatorKinds ki
                "residual_mm"),
       information_(folder / "information.csv", "frame,time_s,marker,used,information_share"),
       kinds_(kinds) {
+  if (kinds.unknown_places) {
+    locations_.emplace(folder / "locations.csv",
+                       "frame,time_s,force,probability,alternatives,long_mm,short_mm,long_x,long_y,"
+                       "long_z");
+  }
   if (!kinds.cables && !kinds.chambers) return;
   actuation_.emplace(
       folder / "actuation.csv",
@@ -83,7 +90,27 @@ void ResultTables::Add(const FrameResult& result) {
   forces_.Flush();
   markers_.Flush();
   information_.Flush();
+  if (locations_) AddLocations(result, moment);
   if (actuation_) AddActuation(result, moment);
+}
+
+void ResultTables::AddLocations(const FrameResult& result, const std::string& moment) {
+  if (!result.ok()) return;
+  const std::string probability = Cell(result.probability, 6);
+  if (result.forces.empty()) {
+    fmt::print(locations_->stream(), "{},,{},,,,,,\n", moment, probability);
+  }
+  for (const ForceResult& force : result.forces) {
+    // Across the surface the covariance is 0: the two larger axes lie on it.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(force.place_covariance);
+    const Eigen::Vector3d half =
+        (geometry::ChiSquareQuantile(0.95, 2) * axes.eigenvalues().cwiseMax(0)).cwiseSqrt();
+    const Eigen::Vector3d along = axes.eigenvectors().col(2);
+    fmt::print(locations_->stream(), "{},{},{},{},{},{},{},{},{}\n", moment, force.identity,
+               probability, fmt::join(force.alternatives, " "), Cell(1e3 * half(2), 4),
+               Cell(1e3 * half(1), 4), Cell(along.x(), 5), Cell(along.y(), 5), Cell(along.z(), 5));
+  }
+  locations_->Flush();
 }
 
 void ResultTables::AddActuation(const FrameResult& result, const std::string& moment) {
@@ -102,6 +129,7 @@ void ResultTables::Commit() {
   forces_.Commit();
   markers_.Commit();
   information_.Commit();
+  if (locations_) locations_->Commit();
   if (actuation_) actuation_->Commit();
 }
 

@@ -26,28 +26,32 @@ class PendingTable {
   std::ofstream stream_;
 };
 
-// The kinds of actuators that a scene has: each has columns of its own.
-struct ActuatorKinds {
+// What a scene has beside forces and markers.
+struct TableKinds {
   bool cables = false;
   bool chambers = false;
+  bool unknown_places = false;  // of the forces
 };
 
-// forces.csv, markers.csv, information.csv and, for a scene with actuators, actuation.csv.
+// forces.csv, markers.csv, information.csv; actuation.csv for a scene with actuators, each kind
+// with columns of its own; locations.csv if the places of forces are found.
 class ResultTables {
  public:
-  ResultTables(const std::filesystem::path& folder, ActuatorKinds kinds);
+  ResultTables(const std::filesystem::path& folder, TableKinds kinds);
 
   // The rows are in the partial files when it returns: a run that is killed loses none of them.
   void Add(const FrameResult& result);
   void Commit();
 
  private:
+  void AddLocations(const FrameResult& result, const std::string& moment);
   void AddActuation(const FrameResult& result, const std::string& moment);
 
   PendingTable forces_;
   PendingTable markers_;
   PendingTable information_;
-  ActuatorKinds kinds_;
+  std::optional<PendingTable> locations_;
+  TableKinds kinds_;
   std::optional<PendingTable> actuation_;
 };
 

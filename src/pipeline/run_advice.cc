@@ -61,6 +61,15 @@ void AboutFit(const RunTally& tally, std::vector<RunAdvice>* advice) {
        "with softforce mesh whether the mesh is fine enough, or raise --local-model-error."});
 }
 
+void AboutDoubt(const RunTally& tally, std::vector<RunAdvice>* advice) {
+  if (tally.frames_in_doubt == 0) return;
+  advice->push_back(
+      {fmt::format("In {} of {} frames the number of forces, or the face they act on, is in doubt",
+                   tally.frames_in_doubt, tally.report.usable_frames),
+       "Put more markers near where forces act (softforce design says where), leave out candidates "
+       "on faces that nothing touches, or give candidates a direction."});
+}
+
 void AboutMarkers(const RunTally& tally, const ReportLog& log, std::vector<RunAdvice>* advice) {
   constexpr auto kHidden = static_cast<size_t>(MarkerStatus::kHidden);
   constexpr auto kRejected = static_cast<size_t>(MarkerStatus::kRejected);
@@ -90,6 +99,7 @@ std::vector<RunAdvice> AdviceFor(const RunTally& tally, const ReportLog& log) {
   std::vector<RunAdvice> advice;
   AboutFrames(tally, &advice);
   AboutFit(tally, &advice);
+  AboutDoubt(tally, &advice);
   AboutMarkers(tally, log, &advice);
   return advice;
 }

@@ -5,16 +5,16 @@
 namespace softforce::pipeline {
 namespace {
 
-ActuatorKinds KindsOf(const World& world) {
+TableKinds KindsOf(const scene::Scene& scene, const World& world) {
   const fem::Body& body = world.solver->body();
-  return {!body.cables.empty(), !body.chambers.empty()};
+  return {!body.cables.empty(), !body.chambers.empty(), !scene.forces.known_locations};
 }
 
 }  // namespace
 
 RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, const World& world,
                        const camera::Rig& rig)
-    : world_(world), tables_(options.out, KindsOf(world)) {
+    : world_(world), tables_(options.out, KindsOf(scene, world)) {
   if (options.overlay && !rig.cameras.empty()) {
     overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, options.overlay_width,
                      options.layers);

@@ -5,8 +5,9 @@
 namespace softforce::pipeline {
 namespace {
 
-constexpr int kMaxFrameWarnings = 20;  // about single frames; the rest is counted
-constexpr double kAlone = 0.02;        // share of a camera's pictures that is worth a warning
+constexpr int kMaxFrameWarnings = 20;   // about single frames; the rest is counted
+constexpr double kWithoutDoubt = 0.99;  // probability
+constexpr double kAlone = 0.02;         // share of a camera's pictures that is worth a warning
 
 }  // namespace
 
@@ -21,6 +22,7 @@ void RunTally::Add(const FrameResult& result) {
   if (result.ok()) {
     ++report.usable_frames;
     if (!result.forces.empty()) report.last = result;
+    if (result.probability < kWithoutDoubt) ++frames_in_doubt;
     if (result.degrees_of_freedom > 0) {
       reduced_chi2.push_back(result.chi2 / result.degrees_of_freedom);
     }
@@ -51,6 +53,12 @@ void RunTally::Judge(const std::vector<std::string>& messages,
                      const std::vector<std::string>& short_of) {
   const int untold = report.frames - report.usable_frames - kMaxFrameWarnings;
   if (untold > 0) report.warnings.push_back(fmt::format("{} more frames without forces", untold));
+  if (frames_in_doubt > 0) {
+    report.warnings.push_back(fmt::format(
+        "in {} of {} frames another number of forces, or another face of the body, explains the "
+        "markers nearly as well: see probability and alternatives in locations.csv",
+        frames_in_doubt, report.usable_frames));
+  }
   report.warnings.insert(report.warnings.end(), messages.begin(), messages.end());
   if (report.live) WarnOfCameras();
   report.warnings.insert(report.warnings.end(), short_of.begin(), short_of.end());

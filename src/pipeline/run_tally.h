@@ -12,7 +12,9 @@ namespace softforce::pipeline {
 struct RunTally {
   RunReport report;
   std::map<std::string, int> frame_statuses, marker_statuses;
-  int markers_expected_absent = 0;   // of the hidden ones: no camera could have seen them
+  int markers_expected_absent = 0;  // of the hidden ones: no camera could have seen them
+  // Frames in which another number of forces, or another face, explains the markers nearly as well.
+  int frames_in_doubt = 0;
   std::vector<double> reduced_chi2;  // of each frame with forces
 
   void Add(const FrameResult& result);

@@ -85,6 +85,9 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   json["frames"] = {{"processed", facts.tally.report.frames},
                     {"with_forces", facts.tally.report.usable_frames},
                     {"by_status", facts.tally.frame_statuses}};
+  if (!facts.scene.forces.known_locations) {
+    json["frames"]["in_doubt"] = facts.tally.frames_in_doubt;
+  }
   json["markers_by_status"] = facts.tally.marker_statuses;
   json["markers_expected_absent"] = facts.tally.markers_expected_absent;
   json["warnings"] = facts.tally.report.warnings;

@@ -67,6 +67,7 @@ void Tracker::LocateForces(const fem::Actuation& actuation, FrameResult* result,
     if (located.rejected[i]) (*rejected)[features[i]] = 1;
   }
   result->forces = locator_->Results(located);
+  result->probability = located.probability;
 }
 
 // A dot is its only feature. A tag is measured by its corners: its centre is where the model has

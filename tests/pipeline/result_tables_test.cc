@@ -94,6 +94,29 @@ TEST(ResultTables, GiveAForceItsIdentityAndHowSureItsPlaceIs) {
       << text;
 }
 
+TEST(ResultTables, SayWhereElseAForceMayAct) {
+  const std::filesystem::path folder = FreshFolder("result_tables_locations");
+  FrameResult frame = GoodFrame();
+  frame.probability = 0.75;
+  frame.forces[0].identity = 4;
+  frame.forces[0].alternatives = {2, 9};
+  frame.forces[0].place_covariance = Eigen::Vector3d(1e-6, 4e-6, 0).asDiagonal();  // m²
+  FrameResult none = GoodFrame();
+  none.forces.clear();
+  none.probability = 1;
+  ResultTables tables(folder, {false, false, true});
+  tables.Add(frame);
+  tables.Add(none);
+  tables.Commit();
+
+  // Half axes: 1 and 2 mm times the root of 5.9915, the 95 % quantile of chi squared with 2 degrees
+  // of freedom.
+  EXPECT_EQ(ReadText(folder / "locations.csv"),
+            "frame,time_s,force,probability,alternatives,long_mm,short_mm,long_x,long_y,long_z\n"
+            "3,0.100000,4,0.750000,2 9,4.8955,2.4477,0.00000,1.00000,0.00000\n"
+            "3,0.100000,,1.000000,,,,,,\n");
+}
+
 TEST(ResultTables, SayWhyAFrameIsNotUsable) {
   const std::filesystem::path folder = FreshFolder("result_tables_lost");
   FrameResult lost = GoodFrame();

@@ -62,7 +62,8 @@ struct LocatedForce {
   // Of the place over the surface of the body at rest: along the columns of `tangents`, m².
   Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();
   Eigen::Matrix2d location_covariance = Eigen::Matrix2d::Zero();
-  // Candidates at which it would explain the observations nearly as well.
+  // Candidates that it may act at instead: those within its 95 % region or on another face, or by
+  // kCandidates those in likely other sets.
   std::vector<int> alternatives;
 
   double location_sd() const;  // m, along the direction that is known least
@@ -72,6 +73,10 @@ struct LocationEstimate {
   ForceEstimate::Status status = ForceEstimate::Status::kNotRun;
   std::string reason;  // for a person; empty if ok
   std::vector<LocatedForce> forces;
+  // That the forces are as many as found, and on these faces; by kCandidates, that the right
+  // candidates were found. The model's errors are part of what is weighed, as the observations'
+  // noise is. NaN by kThreshold.
+  double probability = NAN;
   double chi2 = NAN;  // of the observations used
   int degrees_of_freedom = 0;
   std::vector<char> rejected;  // per observation

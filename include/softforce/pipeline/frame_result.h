@@ -17,6 +17,9 @@ struct ForceResult {
   Eigen::Matrix3d covariance;  // N²
   Eigen::Matrix3d place_covariance = Eigen::Matrix3d::Zero();  // m², of `rest`; 0 if it is known
 
+  // Candidates (ids in the scene) at which it may act instead.
+  std::vector<int> alternatives{};
+
   double NormSd() const;  // N, standard deviation of the force's norm
   double PlaceSd()
       const;  // m, standard deviation of the place, along the surface where it is largest
@@ -66,6 +69,8 @@ struct FrameResult {
   std::vector<MarkerResult> markers;
   std::vector<CableResult> cables;
   std::vector<ChamberResult> chambers;
+  // If places are not known: that the forces are as many as found, and on these faces.
+  double probability = NAN;
   double chi2 = NAN;
   int degrees_of_freedom = 0;
 
