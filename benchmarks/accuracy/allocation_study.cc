@@ -28,8 +28,10 @@ std::vector<Case> Cases() {
           {"30 % hidden, 20 % clutter", {0.3, Hiding::kEachFrame, 0.2}},
           {"50 % hidden for 10 frames and more, 20 % clutter", {0.5, Hiding::kBursts, 0.2}},
           {"the same, all on one side", {0.5, Hiding::kSide, 0.2}},
-          {"the same, and blackouts of 5 frames", {0.5, Hiding::kSide, 0.2, 50, 5}},
-          {"the same, and blackouts of 20 frames", {0.5, Hiding::kSide, 0.2, 50, 20}}};
+          {"the same, clutter of 0.6 to 1.6 times a marker's size",
+           {0.5, Hiding::kSide, 0.2, 0, 5, 1.6}},
+          {"one side hidden, and blackouts of 5 frames", {0.5, Hiding::kSide, 0.2, 50, 5}},
+          {"one side hidden, and blackouts of 20 frames", {0.5, Hiding::kSide, 0.2, 50, 20}}};
 }
 
 double Percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }

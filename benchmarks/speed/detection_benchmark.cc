@@ -11,6 +11,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
@@ -59,18 +60,20 @@ cv::Mat Ground(cv::RNG* random) {
   return grey;
 }
 
-// Markers on a grid that moves by 3 px from picture to picture.
+// Markers on a grid that moves to and fro, by 3 px from picture to picture, so that the last
+// picture leads on to the first.
 std::vector<Pair> PaintCrowd(bool tags) {
   cv::RNG random(5);
   const cv::Mat ground = Ground(&random);
   const int across = tags ? 6 : 10, down = tags ? 4 : 6;
   std::vector<Pair> pairs;
   for (int i = 0; i < kPairs; ++i) {
+    const int step = std::min(i, kPairs - i);
     Pair pair;
     for (int c = 0; c < 2; ++c) {
       cv::Mat grey = ground.clone();
       for (int k = 0; k < across * down; ++k) {
-        const cv::Point at(120 + 1000 * (k % across) / across + 3 * i + 20 * c,
+        const cv::Point at(120 + 1000 * (k % across) / across + 3 * step + 20 * c,
                            120 + 800 * (k / across) / down);
         if (tags) {
           const vision::TagCells tag = vision::DrawTag("tag36h11", k);

@@ -34,9 +34,10 @@ Eigen::Matrix2d WithFloor(const Eigen::Matrix2d& covariance, double floor_px) {
   return covariance + floor_px * floor_px * Eigen::Matrix2d::Identity();
 }
 
-// The dots of a size that some expected marker could have.
-std::vector<int> DotsOfRightSize(const std::vector<vision::Dot>& dots,
-                                 const std::vector<View>& views, double tolerance) {
+// The dots that look as some expected marker could.
+std::vector<int> DotsThatMayBeMarkers(const std::vector<vision::Dot>& dots,
+                                      const std::vector<View>& views, double tolerance,
+                                      const DotLook& look) {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = 0;
   for (const View& view : views) {
@@ -47,7 +48,13 @@ std::vector<int> DotsOfRightSize(const std::vector<vision::Dot>& dots,
   std::vector<int> kept;
   for (int d = 0; d < static_cast<int>(dots.size()); ++d) {
     const double size = dots[d].long_axis;
-    if (size >= smallest / tolerance && size <= largest * tolerance) kept.push_back(d);
+    if (size < smallest / tolerance || size > largest * tolerance) continue;
+    if (look.tolerance > 0) {
+      const double scaled = size / look.scale;
+      if (scaled < smallest / look.tolerance || scaled > largest * look.tolerance) continue;
+      if ((dots[d].contrast > 0) != look.bright) continue;
+    }
+    kept.push_back(d);
   }
   return kept;
 }
@@ -56,7 +63,7 @@ std::vector<int> DotsOfRightSize(const std::vector<vision::Dot>& dots,
 
 CameraView ViewOf(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
                   const std::vector<PredictedFeature>& predicted, const CameraDetections& seen,
-                  const ObserveOptions& options) {
+                  const ObserveOptions& options, const DotLook& look) {
   CameraView view;
   const Eigen::Isometry3d T_camera_robot = camera.T_camera_rig * T_rig_robot;
   for (int f = 0; f < static_cast<int>(predicted.size()); ++f) {
@@ -65,7 +72,7 @@ CameraView ViewOf(int c, const camera::Camera& camera, const Eigen::Isometry3d& 
     view.expected.push_back(f);
     view.nearest = std::min(view.nearest, (T_camera_robot * predicted[f].position).z());
   }
-  view.kept = DotsOfRightSize(seen.dots, view.features, options.size_tolerance);
+  view.kept = DotsThatMayBeMarkers(seen.dots, view.features, options.size_tolerance, look);
   for (const int d : view.kept) {
     view.detections.push_back(
         {seen.dots[d].centroid, WithFloor(seen.dots[d].covariance, options.pixel_floor)});

@@ -28,7 +28,7 @@ struct CameraView {
 // `c` is the camera's number in the rig.
 CameraView ViewOf(int c, const camera::Camera& camera, const Eigen::Isometry3d& T_rig_robot,
                   const std::vector<PredictedFeature>& predicted, const CameraDetections& seen,
-                  const ObserveOptions& options);
+                  const ObserveOptions& options, const DotLook& look = {});
 
 // Whether a camera should see a feature: it is in its picture, turned towards it, and the body is
 // not in the way.

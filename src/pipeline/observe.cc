@@ -67,6 +67,7 @@ void ObserveOptions::Check() const {
           "must be greater than 0 px");
   require(min_facing >= 0 && min_facing < 1, "min_facing", "must be at least 0 and below 1");
   require(size_tolerance > 1, "size_tolerance", "must be greater than 1");
+  require(size_spread > 1, "size_spread", "must be greater than 1");
 }
 
 std::vector<FeatureObservation> Locate(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,

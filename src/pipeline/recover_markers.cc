@@ -27,7 +27,7 @@ std::vector<Tracker::Allocated> Tracker::Propose(const std::vector<CameraDetecti
   const allocation::Belief prior{Eigen::VectorXd::Zero(shared.rows()), shared};
   std::vector<Allocated> proposals;
   for (JointSightings& found : ProposeDots(rig_, T_rig_robot_, features, prior, detections,
-                                           kHypotheses, options_.observe)) {
+                                           kHypotheses, options_.observe, looks_)) {
     Allocated allocated;
     allocated.sightings = std::move(found.sightings);
     allocated.delta = std::move(found.delta);

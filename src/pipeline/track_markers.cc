@@ -137,13 +137,13 @@ Tracker::Allocated Tracker::Allocate(const std::vector<CameraDetections>& detect
         AllocateTagCorners(scene_.markers, rig_, T_rig_robot_, features_.features(), predicted,
                            detections, threshold, options_.observe);
   } else if (options_.observe.allocation.rule == allocation::Rule::kNearest) {
-    allocated.sightings =
-        AllocateDots(rig_, T_rig_robot_, predicted, detections, threshold, options_.observe);
+    allocated.sightings = AllocateDots(rig_, T_rig_robot_, predicted, detections, threshold,
+                                       options_.observe, looks_);
   } else {
     allocated.prior = {Eigen::VectorXd::Zero(shared.rows()), shared};
     allocated.intensity = estimator_.intensity();
     JointSightings found = AllocateDotsJointly(rig_, T_rig_robot_, features, allocated.prior,
-                                               detections, threshold, options_.observe);
+                                               detections, threshold, options_.observe, looks_);
     LeaveOutUnconfirmed(features, &found.sightings);
     allocated.sightings = std::move(found.sightings);
     allocated.delta = std::move(found.delta);
@@ -164,7 +164,7 @@ bool Tracker::AllocateAgain(const std::vector<CameraDetections>& detections, dou
   allocation::Belief near{allocated->delta.mean, kWiden * SharedCovariance(covariance)};
   near.mean.head(n).setZero();
   JointSightings found = AllocateDotsJointly(rig_, T_rig_robot_, features, prior, detections,
-                                             2 * threshold, options_.observe, &near);
+                                             2 * threshold, options_.observe, looks_, &near);
   LeaveOutUnconfirmed(features, &found.sightings);
   const bool changed = found.sightings.dots != allocated->sightings.dots;
   std::vector<PredictedFeature> predicted;
@@ -232,6 +232,26 @@ Tracker::Attempt Tracker::Settle(Allocated allocated,
     }
   }
   return attempt;
+}
+
+void Tracker::LearnLooks(const std::vector<CameraDetections>& detections,
+                         const std::vector<char>& rejected) {
+  const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
+  std::vector<PredictedFeature> features;
+  FeatureSightings sightings = sightings_;
+  for (const Feature& feature : features_.features()) {
+    const size_t f = features.size();
+    features.emplace_back();
+    features[f].position = feature.point.weights.Apply(x) + feature.point.offset;
+    features[f].diameter = feature.diameter;
+    if (rejected[f]) sightings.dots[f].clear();
+  }
+  const std::vector<DotLook> seen =
+      LooksOf(rig_, T_rig_robot_, features, detections, sightings, options_.observe);
+  looks_.resize(seen.size());
+  for (size_t c = 0; c < seen.size(); ++c) {
+    if (seen[c].tolerance > 0) looks_[c] = seen[c];
+  }
 }
 
 }  // namespace softforce::pipeline

@@ -123,6 +123,7 @@ FrameResult Tracker::Process(int frame, double time_s,
       result.forces = ForceResults(estimate);
     }
   }
+  if (estimate.ok() && attempt.allocated.joint()) LearnLooks(detections, rejected);
   sighted_before_ = estimate.ok() ? std::move(sighted_) : std::vector<std::vector<char>>();
   result.markers = MarkerResults(located, rejected);
   TellWhatIsAbsent(&result.markers);

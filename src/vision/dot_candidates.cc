@@ -18,14 +18,16 @@ constexpr int kNeighbourhood = 25;
 constexpr double kThresholdShare = 0.3;
 
 int GreyAt(const cv::Mat& grey, const Eigen::Vector2d& p) {
-  const int x = std::clamp(static_cast<int>(std::lround(p.x())), 0, grey.cols - 1);
-  const int y = std::clamp(static_cast<int>(std::lround(p.y())), 0, grey.rows - 1);
+  const int x = std::clamp(cvRound(p.x()), 0, grey.cols - 1);
+  const int y = std::clamp(cvRound(p.y()), 0, grey.rows - 1);
   return grey.at<uchar>(y, x);
 }
 
 // The ellipse with the area moments of a closed contour through pixel centres. The blob reaches
-// half a pixel further out.
-std::optional<Ellipse> EllipseOf(const std::vector<cv::Point>& contour, double* area_share) {
+// half a pixel further out. Nothing if its short axis is less than `min_short` (px), or the blob
+// fills less of its ellipse than a disc does.
+std::optional<Ellipse> EllipseOf(const std::vector<cv::Point>& contour, double min_short) {
+  constexpr double kMinAreaShare = 0.85;  // a disc has 1
   const cv::Moments m = cv::moments(contour);
   if (!(m.m00 > 0)) return std::nullopt;
   Eigen::Matrix2d covariance;
@@ -33,8 +35,9 @@ std::optional<Ellipse> EllipseOf(const std::vector<cv::Point>& contour, double* 
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(covariance / m.m00);
   const Eigen::Vector2d half = 2 * axes.eigenvalues().cwiseMax(0).cwiseSqrt();  // px
-  *area_share = m.m00 / (M_PI * half.prod());
+  if (m.m00 < kMinAreaShare * M_PI * half.prod()) return std::nullopt;
   const Eigen::Vector2d grown = half.array() + 0.5;
+  if (2 * grown(0) < min_short) return std::nullopt;
   const Eigen::Matrix2d shape =
       axes.eigenvectors() * grown.cwiseAbs2().asDiagonal() * axes.eigenvectors().transpose();
   return Ellipse({m.m10 / m.m00, m.m01 / m.m00}, shape);
@@ -45,12 +48,22 @@ double Median(double* values, int count) {
   return values[count / 2];
 }
 
+template <int kCount>
+std::array<Eigen::Vector2d, kCount> UnitVectors() {
+  std::array<Eigen::Vector2d, kCount> units;
+  for (int i = 0; i < kCount; ++i) {
+    units[i] << std::cos(2 * M_PI * i / kCount), std::sin(2 * M_PI * i / kCount);
+  }
+  return units;
+}
+
 // A first look at a few pixels: a disc is brighter (darker) inside than around it, nearly
 // everywhere a little and at the median by its contrast. Few blobs of a picture's clutter are, so
 // that only few need to be measured.
 bool StandsOut(const cv::Mat& smooth, const cv::Point& corner, const Ellipse& ellipse, bool bright,
                double min_contrast) {
   constexpr int kDirections = 16;
+  static const auto kUnit = UnitVectors<kDirections>();
   constexpr int kMaxExceptions = 4;
   constexpr double kOutside = 2.5;  // px from the contour, where blur has faded
   constexpr double kShare = 0.65;   // of the smallest contrast, that the first look must show
@@ -62,7 +75,7 @@ bool StandsOut(const cv::Mat& smooth, const cv::Point& corner, const Ellipse& el
   std::array<double, kDirections> here, around;
   int exceptions = 0;
   for (int i = 0; i < kDirections; ++i) {
-    const Eigen::Vector2d contour = ellipse.ContourAt(2 * M_PI * i / kDirections);
+    const Eigen::Vector2d contour = ellipse.ContourAt(kUnit[i]);
     here[i] = sign * GreyAt(smooth, centre + 0.4 * contour);
     around[i] = sign * GreyAt(smooth, centre + contour + kOutside * contour.normalized());
     exceptions += std::min(here[i], sign * inside) - around[i] < 0.5 * min_contrast;
@@ -90,8 +103,7 @@ struct Part {
 
 void CollectBlobs(const cv::Mat& mask, const Part& part, bool bright, const DotOptions& options,
                   std::vector<Ellipse>* blobs) {
-  constexpr double kSlack = 2;            // px; blur and the threshold shift the contour
-  constexpr double kMinAreaShare = 0.85;  // of the ellipse with the contour's moments; a disc has 1
+  constexpr double kSlack = 2;  // px; blur and the threshold shift the contour
   std::vector<std::vector<cv::Point>> contours;
   std::vector<cv::Vec4i> hierarchy;
   cv::findContours(mask, contours, hierarchy, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE,
@@ -104,11 +116,8 @@ void CollectBlobs(const cv::Mat& mask, const Part& part, bool bright, const DotO
       continue;
     }
     if (IsCut(box - part.rect.tl(), part.rect, part.picture)) continue;
-    double area_share = 0;
-    const std::optional<Ellipse> ellipse = EllipseOf(contours[i], &area_share);
-    if (!ellipse || 2 * ellipse->short_half() < options.min_diameter - kSlack) continue;
-    if (area_share < kMinAreaShare) continue;
-    if (StandsOut(part.smooth, part.corner, *ellipse, bright, options.min_contrast)) {
+    const std::optional<Ellipse> ellipse = EllipseOf(contours[i], options.min_diameter - kSlack);
+    if (ellipse && StandsOut(part.smooth, part.corner, *ellipse, bright, options.min_contrast)) {
       blobs->push_back(*ellipse);
     }
   }

@@ -11,6 +11,8 @@ namespace softforce::vision {
 namespace {
 
 constexpr int kEstablished = 3;  // pictures in a row; what was seen less often may be noise
+constexpr int kSteady = 15;      // pictures in a row; a faint thing seen less often may flicker
+constexpr int kPatience = 4;     // pictures without a search of the whole after one in vain
 
 // Parts that overlap much are searched together.
 void Merge(std::vector<cv::Rect>* areas) {
@@ -51,6 +53,8 @@ double DotFollower::Known::Margin(const DotFollowerOptions& options) const {
 }
 
 bool DotFollower::Known::IsEstablished() const { return clear || seen >= kEstablished; }
+
+bool DotFollower::Known::IsSteady() const { return clear || seen >= kSteady; }
 
 std::vector<cv::Rect> DotFollower::Areas(const cv::Mat& grey) const {
   const cv::Rect all(0, 0, grey.cols, grey.rows);
@@ -114,11 +118,15 @@ std::vector<DotFollower::Known> DotFollower::Update(const std::vector<Dot>& dots
     now.push_back(next);
   }
   const size_t num_seen = now.size();
+  int faint = 0, faint_lost = 0;
   for (size_t k = 0; k < known_.size(); ++k) {
     Known gone = known_[k];
+    const bool is_faint = gone.IsEstablished() && !gone.IsSteady() && gone.missing == 0;
+    faint += is_faint;
     if (dot_of[k] >= 0 || gone.missing >= options_.forget) continue;
     if (!gone.IsEstablished()) continue;
-    *lost += gone.missing == 0;
+    faint_lost += is_faint;
+    *lost += gone.missing == 0 && gone.IsSteady();
     ++gone.missing;
     // With the neighbour next to it that was followed up to here.
     double nearest = INFINITY;
@@ -132,6 +140,8 @@ std::vector<DotFollower::Known> DotFollower::Update(const std::vector<Dot>& dots
     gone.velocity = velocity;
     now.push_back(gone);
   }
+  // One that flickers is no news; when most are gone, they have moved.
+  if (2 * faint_lost > faint) *lost += faint_lost;
   return now;
 }
 
@@ -143,8 +153,8 @@ std::vector<Dot> DotFollower::Detect(const cv::Mat& grey, const DotOptions& dot_
   for (const cv::Rect& area : areas) {
     share += static_cast<double>(area.area()) / static_cast<double>(grey.total());
   }
-  const bool missing =
-      std::any_of(known_.begin(), known_.end(), [](const Known& dot) { return dot.missing > 0; });
+  const auto is_missing = [](const Known& dot) { return dot.missing > 0 && dot.IsSteady(); };
+  const bool missing = std::any_of(known_.begin(), known_.end(), is_missing);
   bool whole = known_.empty() || since_whole_ >= options_.whole_interval ||
                share > options_.most_of_whole || (missing && since_whole_ >= wait_);
   std::vector<Dot> dots;
@@ -161,11 +171,12 @@ std::vector<Dot> DotFollower::Detect(const cv::Mat& grey, const DotOptions& dot_
     dots = DetectDots(grey, dot_options);
     next = Update(dots, true, dot_options.min_contrast, &lost, &back);
   }
+  // One that is covered comes back near its place; when most are gone, anything may have happened.
+  const bool most = 2 * static_cast<size_t>(lost) > known_.size();
   known_ = std::move(next);
-  const bool still =
-      std::any_of(known_.begin(), known_.end(), [](const Known& dot) { return dot.missing > 0; });
+  const bool still = std::any_of(known_.begin(), known_.end(), is_missing);
   if (back > 0 || lost > 0 || !still) {
-    wait_ = 1;
+    wait_ = most ? 1 : kPatience;
   } else if (whole) {
     wait_ = std::min(2 * wait_, options_.whole_interval);
   }

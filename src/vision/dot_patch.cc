@@ -31,9 +31,9 @@ std::optional<Patch> CutPatch(const cv::Mat& grey, const Ellipse& ellipse, doubl
     const uchar* row = grey.ptr<uchar>(y);
     for (int x = static_cast<int>(std::ceil(low.x())); x <= high.x(); ++x) {
       const Eigen::Vector2d d = Eigen::Vector2d(x, y) - ellipse.centre();
-      const Ellipse::Place place = ellipse.PlaceOf(d);
-      if (place.outside > margin + kRing) continue;
-      patch.pixels.push_back({d, static_cast<double>(row[x]), place.outside, place.curvature});
+      const double outside = ellipse.Outside(d);
+      if (outside > margin + kRing) continue;
+      patch.pixels.push_back({d, static_cast<double>(row[x]), outside});
     }
   }
   // In a small dot no pixel is a margin away from the edge; its innermost ones must do.

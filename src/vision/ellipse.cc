@@ -19,18 +19,25 @@ Ellipse::Ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& shape)
   long_half_ = std::sqrt(axes.eigenvalues()(1));
 }
 
-Ellipse::Place Ellipse::PlaceOf(const Eigen::Vector2d& d) const {
+double Ellipse::Outside(const Eigen::Vector2d& d) const {
   const Eigen::Vector2d normal = inverse_shape_ * d;
   const double radius2 = d.dot(normal);  // 1 on the contour
-  if (!(radius2 > 1e-12)) return {-short_half_, 1 / short_half_};
-  const double radius = std::sqrt(radius2);
-  const double slope = normal.norm() / radius;  // of the radius across the contour, 1/px
-  // The curvature of xᵀQx = 1 is |Q| / |Qx|³, taken where the ray through d meets the contour.
-  return {(radius - 1) / slope, inverse_determinant_ / (slope * slope * slope)};
+  if (!(radius2 > 1e-12)) return -short_half_;
+  // The radius less 1, over the slope of the radius across the contour, |normal| / radius.
+  return (radius2 - std::sqrt(radius2)) / normal.norm();
 }
 
-Eigen::Vector2d Ellipse::ContourAt(double angle) const {
-  return from_circle_ * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+Ellipse::Place Ellipse::PlaceOf(const Eigen::Vector2d& d) const {
+  const Eigen::Vector2d normal = inverse_shape_ * d;
+  const double radius2 = d.dot(normal);
+  if (!(radius2 > 1e-12)) return {-short_half_, 1 / short_half_};
+  const double slope = normal.norm() / std::sqrt(radius2);  // 1/px
+  // The curvature of xᵀQx = 1 is |Q| / |Qx|³, taken where the ray through d meets the contour.
+  return {Outside(d), inverse_determinant_ / (slope * slope * slope)};
+}
+
+Eigen::Vector2d Ellipse::ContourAt(const Eigen::Vector2d& direction) const {
+  return from_circle_ * direction;
 }
 
 double Ellipse::SectorOf(const Eigen::Vector2d& d) const {

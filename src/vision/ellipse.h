@@ -22,9 +22,12 @@ class Ellipse {
     double curvature;  // 1/px, of the contour there
   };
   Place PlaceOf(const Eigen::Vector2d& d) const;
+  // `outside` alone.
+  double Outside(const Eigen::Vector2d& d) const;
 
-  // The contour's point at an angle of the ellipse's own measure, relative to the centre.
-  Eigen::Vector2d ContourAt(double angle) const;
+  // The contour's point in a direction (a unit vector) of the ellipse's own measure, relative to
+  // the centre.
+  Eigen::Vector2d ContourAt(const Eigen::Vector2d& direction) const;
 
   // Direction from the centre in [0, 1), in the ellipse's own measure: equal steps cut equal areas.
   double SectorOf(const Eigen::Vector2d& d) const;

@@ -9,9 +9,8 @@ namespace softforce::vision {
 // One pixel, seen from the centre of a blob.
 struct PatchPixel {
   Eigen::Vector2d d;  // px, from the blob's centre
-  double value;       // grey levels
+  double value;       // grey levels, a whole number
   double outside;     // px, from the blob's contour; negative inside
-  double curvature;   // 1/px, of the contour near by
 };
 
 // A grey level that changes linearly over the picture, as an evenly coloured surface under uneven

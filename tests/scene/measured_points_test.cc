@@ -103,6 +103,52 @@ TEST(MotiveExport, MayHaveTimeCodesAndParents) {
   EXPECT_TRUE(take.frames[0].points.at(0).p_rig.isApprox(Eigen::Vector3d(0.01, 0.02, 0.03)));
 }
 
+// All that version 1.25 can put beside the markers: a byte order mark, a rigid body with rotation
+// and error, where it expects its markers (with a quality each), sizes of markers, and points
+// without a label that appear and vanish; rows end where nothing more was seen. The axis that
+// points up is y.
+constexpr char kFullTake[] =
+    "\xEF\xBB\xBF"
+    "Format Version,1.25,Take Name,Pull 3,Take Notes,,Capture Frame Rate,240.000000,Export Frame "
+    "Rate,120.000000,Capture Start Time,2025-03-14 10.01.02.345 AM,Capture Start Frame,0,Total "
+    "Frames in Take,3,Total Exported Frames,3,Rotation Type,Quaternion,Length "
+    "Units,Centimeters,Coordinate Space,Global\n"
+    "\n"
+    ",Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,"
+    "Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,"
+    "Marker,Marker,Marker,Marker,Marker,Marker,Marker,Marker,Marker,Marker,Marker,Marker\n"
+    ",Name,Base,Base,Base,Base,Base,Base,Base,Base,"
+    "Base:Marker 001,Base:Marker 001,Base:Marker 001,Base:Marker 001,"
+    "\"Sheet:tip\",\"Sheet:tip\",\"Sheet:tip\",\"Sheet:tip\",Unlabeled 1189,Unlabeled 1189,"
+    "Unlabeled 1189,Unlabeled 1189,Unlabeled 1203,Unlabeled 1203,Unlabeled 1203,Unlabeled 1203\n"
+    ",ID,\"A\",\"A\",\"A\",\"A\",\"A\",\"A\",\"A\",\"A\",\"B\",\"B\",\"B\",\"B\","
+    "\"C\",\"C\",\"C\",\"C\",\"D\",\"D\",\"D\",\"D\",\"E\",\"E\",\"E\",\"E\"\n"
+    ",Parent,,,,,,,,,\"A\",\"A\",\"A\",\"A\",,,,,,,,,,,,\n"
+    ",,Rotation,Rotation,Rotation,Rotation,Position,Position,Position,Mean Marker Error,"
+    "Position,Position,Position,Marker Quality,Position,Position,Position,Size,"
+    "Position,Position,Position,Size,Position,Position,Position,Size\n"
+    "Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,,X,Y,Z,,X,Y,Z,,X,Y,Z,,X,Y,Z,\n"
+    "0,0.000000,0,0,0,1,5,6,7,0.1,5,6,7,1,10.5,20,30,0.6,1,2,3,0.6,,,,\n"
+    "1,0.008333,0,0,0,1,5,6,7,0.1,5,6,7,1,,,,,1,2.5,3,0.6,7,8,9,0.6\n"
+    "2,0.016667,,,,,,,,,,,,,10.5,21,30,0.6\n";
+
+TEST(MotiveExport, MayHaveRigidBodiesErrorsSizesAndPointsThatComeAndGo) {
+  const MeasuredPoints take = Read(kFullTake);
+
+  EXPECT_EQ(take.format, "Motive 1.25");
+  ASSERT_EQ(take.frames.size(), 3u);
+  const auto points = [&](int frame) { return take.frames[frame].points; };
+  ASSERT_EQ(points(0).size(), 2u);
+  EXPECT_EQ(points(0)[0].marker, 0);
+  EXPECT_TRUE(points(0)[0].p_rig.isApprox(Eigen::Vector3d(0.105, 0.2, 0.3)));  // m; axes as written
+  EXPECT_EQ(points(0)[1].marker, -1);
+  ASSERT_EQ(points(1).size(), 2u);
+  EXPECT_TRUE(points(1)[0].p_rig.isApprox(Eigen::Vector3d(0.01, 0.025, 0.03)));
+  EXPECT_TRUE(points(1)[1].p_rig.isApprox(Eigen::Vector3d(0.07, 0.08, 0.09)));
+  ASSERT_EQ(points(2).size(), 1u);
+  EXPECT_EQ(points(2)[0].marker, 0);
+}
+
 TEST(MotiveExport, CanBeTakenWithoutItsLabels) {
   Measured measured;
   measured.labels = false;

@@ -29,6 +29,7 @@ class AllocationExperiment {
       : disturbance_(disturbance),
         random_(seed),
         motion_(seed + 1),
+        sizes_(seed + 2),
         scene_(DottedSheetScene()),
         world_(pipeline::BuildWorld(scene_, MakeDottedSheet({10, 5, 1}))),
         truth_(pipeline::BuildWorld(scene_, MakeDottedSheet({13, 7, 1}))),
@@ -222,8 +223,8 @@ class AllocationExperiment {
                     decoys_.end());
       while (static_cast<int>(decoys_.size()) < clutter / 3) {
         const int near = static_cast<int>(Uniform(0, NumMarkers()));
-        decoys_.push_back(
-            {positions_.col(near) + kDotSpacing * DrawMany(3), static_cast<int>(Uniform(3, 15))});
+        decoys_.push_back({positions_.col(near) + kDotSpacing * DrawMany(3),
+                           static_cast<int>(Uniform(3, 15)), DrawSize()});
       }
     }
     const auto add = [&](const vision::Dot& dot) {
@@ -234,7 +235,9 @@ class AllocationExperiment {
       dots->emplace_back(dot, -1);
     };
     for (const Decoy& decoy : decoys_) {
-      if (const auto dot = See(camera, decoy.position, Eigen::Vector3d::UnitZ())) add(*dot);
+      if (const auto dot = See(camera, decoy.position, Eigen::Vector3d::UnitZ())) {
+        add(Scaled(*dot, decoy.size));
+      }
     }
     for (int i = static_cast<int>(decoys_.size()); i < clutter; ++i) {
       const int near = static_cast<int>(Uniform(0, NumMarkers()));
@@ -245,8 +248,20 @@ class AllocationExperiment {
       } else {
         dot->centroid += 20 * Eigen::Vector2d(Draw(), Draw());  // px
       }
-      add(*dot);
+      add(Scaled(*dot, DrawSize()));
     }
+  }
+
+  // Drawn apart, so that all else is the same whatever the clutter's sizes.
+  double DrawSize() {
+    const double most = std::log(disturbance_.clutter_sizes);
+    return std::exp(most * (2 * uniform_(sizes_) - 1));
+  }
+
+  static vision::Dot Scaled(vision::Dot dot, double factor) {
+    dot.long_axis *= factor;
+    dot.short_axis *= factor;
+    return dot;
   }
 
   void Count(const pipeline::FrameResult& result, const std::vector<std::vector<int>>& sources) {
@@ -356,10 +371,11 @@ class AllocationExperiment {
   struct Decoy {
     Eigen::Vector3d position;  // m
     int frames_left;
+    double size;  // of a marker's
   };
 
   Disturbance disturbance_;
-  std::mt19937 random_, motion_;
+  std::mt19937 random_, motion_, sizes_;
   std::normal_distribution<double> normal_;
   std::uniform_real_distribution<double> uniform_;
   scene::Scene scene_;

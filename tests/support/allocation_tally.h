@@ -18,6 +18,8 @@ struct Disturbance {
   double clutter = 0;       // false dots, as a share of the markers seen
   int blackout_every = 0;   // frames; at the end of them no camera sees anything
   int blackout_length = 5;  // frames
+  // Clutter is up to this many times larger or smaller than a marker.
+  double clutter_sizes = 1;
 };
 
 // What came of the markers, counted per marker and frame.

@@ -86,6 +86,21 @@ TEST(DotFollower, FindsACoveredDotInThePictureInWhichItIsSeenAgain) {
   EXPECT_LE(follower.whole_searches(), 6);  // the start, the loss, after 1, 2, 4, 8 pictures
 }
 
+// Of 20 grey levels, where 15 are the least that counts.
+TEST(DotFollower, DoesNotSearchTheWholePictureForAFaintDotThatComesAndGoes) {
+  DotFollower follower;
+  for (int i = 0; i < 12; ++i) {
+    const bool shown = i < 4 || i >= 8;
+    SyntheticScene scene(500, 400, 90);
+    PaintEllipse({{80, 90}, 16, 12, 0.4}, 200, &scene);
+    PaintEllipse({{80, 200}, 16, 12, 0.4}, 110, &scene);
+    if (shown) PaintEllipse({{300, 200}, 16, 12, 0.4}, 110, &scene);
+    std::mt19937 random(i);
+    ASSERT_EQ(follower.Detect(scene.TakePicture(2, random)).size(), shown ? 3u : 2u) << i;
+  }
+  EXPECT_EQ(follower.whole_searches(), 1);
+}
+
 TEST(DotFollower, FindsANewDotAtTheNextWholeSearch) {
   DotFollowerOptions options;
   options.whole_interval = 5;

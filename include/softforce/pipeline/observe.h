@@ -51,6 +51,14 @@ struct FeatureObservation {
   int cameras = 0;  // that saw it
 };
 
+// How the dots on the body look in one camera, told by those that were allocated in the last frame:
+// a decoy seldom looks the same.
+struct DotLook {
+  double scale = 1;      // of their long axes, over what the scene's size and the place say
+  double tolerance = 0;  // a dot may be this much larger or smaller; 0: nothing is known yet
+  bool bright = true;    // brighter than what is around them
+};
+
 struct ObserveOptions {
   allocation::AllocationOptions allocation;
   double detection_probability = 0.7;  // of a marker that should be seen
@@ -60,6 +68,7 @@ struct ObserveOptions {
   double pixel_floor = 0.03;
   double min_facing = 0.1;      // cosine between a marker's normal and the way to the camera
   double size_tolerance = 1.7;  // a dot's picture may be this much larger or smaller than expected
+  double size_spread = 1.25;  // the same, once the others on the body have shown how large they are
 
   void Check() const;  // throws InputError naming the option
 };
@@ -73,11 +82,18 @@ struct FeatureSightings {
 };
 
 // `threshold_displacement`: the paper's threshold, m; a detection further from its prediction is
-// not it.
+// not it. `looks`: per camera, or empty if nothing is known yet.
 FeatureSightings AllocateDots(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
                               const std::vector<PredictedFeature>& predicted,
                               const std::vector<CameraDetections>& cameras,
-                              double threshold_displacement, const ObserveOptions& options);
+                              double threshold_displacement, const ObserveOptions& options,
+                              const std::vector<DotLook>& looks = {});
+
+// How the dots look that were sighted, per camera; nothing is known where they are too few to tell.
+std::vector<DotLook> LooksOf(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
+                             const std::vector<PredictedFeature>& features,
+                             const std::vector<CameraDetections>& cameras,
+                             const FeatureSightings& sightings, const ObserveOptions& options);
 
 struct JointSightings {
   FeatureSightings sightings;
@@ -90,6 +106,7 @@ JointSightings AllocateDotsJointly(const camera::Rig& rig, const Eigen::Isometry
                                    const allocation::Belief& prior,
                                    const std::vector<CameraDetections>& cameras,
                                    double threshold_displacement, const ObserveOptions& options,
+                                   const std::vector<DotLook>& looks = {},
                                    const allocation::Belief* near = nullptr);
 
 // What may have been seen, for a caller who finds out which of these is true: see
@@ -99,7 +116,8 @@ std::vector<JointSightings> ProposeDots(const camera::Rig& rig,
                                         const std::vector<MovingFeature>& predicted,
                                         const allocation::Belief& prior,
                                         const std::vector<CameraDetections>& cameras,
-                                        int hypotheses, const ObserveOptions& options);
+                                        int hypotheses, const ObserveOptions& options,
+                                        const std::vector<DotLook>& looks = {});
 
 // From sightings to measured places: two cameras or more triangulate, one gives two equations.
 std::vector<FeatureObservation> Locate(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,

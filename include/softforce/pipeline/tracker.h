@@ -121,6 +121,9 @@ class Tracker {
   // A dot that comes back in one camera alone, while another should see it too, is believed when
   // that camera sees it a second time: it may be something else.
   void LeaveOutUnconfirmed(const std::vector<MovingFeature>& features, FeatureSightings* sightings);
+  // How the dots look that the forces explain, for the next frame.
+  void LearnLooks(const std::vector<CameraDetections>& detections,
+                  const std::vector<char>& rejected);
   // Whether no camera could see the features of each marker.
   void TellWhatIsAbsent(std::vector<MarkerResult>* markers) const;
   std::vector<MarkerObservation> ObservationsOf(const Allocated& allocated,
@@ -150,6 +153,7 @@ class Tracker {
   geometry::Matrix6d registration_covariance_;  // as the estimator takes it
   std::vector<MarkerObservation> observations_;
   FeatureSightings sightings_;
+  std::vector<DotLook> looks_;  // of the last frame with forces; they outlast a blackout
   // Per feature and camera, whether it was sighted there in the last frame, believed or not, and in
   // this one; empty if the last frame is not to be relied on.
   std::vector<std::vector<char>> sighted_before_, sighted_;

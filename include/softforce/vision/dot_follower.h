@@ -24,9 +24,10 @@ struct DotFollowerOptions {
 // Finds dots in the pictures of one camera, one after another: first near where they should be,
 // from where and how fast they went; one that was lost is expected to go with its neighbours. The
 // whole picture is searched at intervals, and after a loss: in the same picture if a dot is lost
-// that was seen a few times in a row, then after 2, 4, 8 … pictures. Every dot that it finds is the
-// one that DetectDots finds in the whole picture, to the last bit. What it finds depends on the
-// pictures and their order alone.
+// that is clear or was seen 15 times in a row, or most of the faint ones; if in vain, again after
+// 4, 8 … pictures, or 1, 2, 4 … if most are gone. Every dot that it finds is the one that
+// DetectDots finds in the whole picture, to the last bit. What it finds depends on the pictures and
+// their order alone.
 class DotFollower {
  public:
   explicit DotFollower(const DotFollowerOptions& options = {});
@@ -46,14 +47,14 @@ class DotFollower {
     int missing;               // pictures since
 
     double Margin(const DotFollowerOptions& options) const;
-    // Worth a search of the whole picture if it is lost.
-    bool IsEstablished() const;
+    bool IsEstablished() const;  // worth being looked for near its place if it is lost
+    bool IsSteady() const;       // worth a search of the whole picture
   };
 
   std::vector<cv::Rect> Areas(const cv::Mat& grey) const;
-  // The known dots after this picture; `lost` is how many established ones were not seen in it for
-  // the first time, `back` how many of the missing ones were. `whole`: the whole picture was
-  // searched, where a dot may have gone further.
+  // The known dots after this picture; `lost` is how many steady ones were not seen in it for the
+  // first time (and of faint ones, if most are gone), `back` how many of the missing ones were.
+  // `whole`: the whole picture was searched, where a dot may have gone further.
   std::vector<Known> Update(const std::vector<Dot>& dots, bool whole, double min_contrast,
                             int* lost, int* back) const;
 
