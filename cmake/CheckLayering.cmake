@@ -30,6 +30,7 @@ set(headers_spdlog::spdlog "^spdlog/")
 set(headers_OpenSSL::Crypto "^openssl/")
 set(headers_TBB::tbb "^oneapi/tbb/")
 set(headers_CLI11::CLI11 "^CLI/")
+set(headers_Httplib::Httplib "^httplib\\.h$")
 
 set(failures "")
 function(check_file file allowed_libraries)

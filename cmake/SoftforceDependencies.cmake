@@ -40,6 +40,11 @@ foreach(library avformat avutil swscale)
   target_link_libraries(FFmpeg::FFmpeg INTERFACE ${${library}_LIBRARY})
 endforeach()
 
+# cpp-httplib: a library here, built with these three; its header must be told.
+pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib>=0.11)
+add_library(Httplib::Httplib INTERFACE IMPORTED GLOBAL)
+target_link_libraries(Httplib::Httplib INTERFACE PkgConfig::HTTPLIB)
+
 add_library(GStreamer::App INTERFACE IMPORTED GLOBAL)
 target_link_libraries(GStreamer::App INTERFACE PkgConfig::GSTREAMER)
 

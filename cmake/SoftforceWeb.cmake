@@ -29,15 +29,17 @@ function(softforce_embed target function header)
   target_sources(${target} PRIVATE ${source})
 endfunction()
 
-# softforce_bundle(NAME): the script ${softforce_web_dir}/NAME.bundle.js, made of web/NAME.js and all it imports.
+# softforce_bundle(NAME IMPORTS…): the script ${softforce_web_dir}/NAME.bundle.js, made of web/NAME.js and all it imports; those of
+# ours, from web/, are named.
 function(softforce_bundle name)
   set(source ${PROJECT_SOURCE_DIR}/web/${name}.js)
+  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/web/ OUTPUT_VARIABLE imports)
   set(bundle ${softforce_web_dir}/${name}.bundle.js)
   add_custom_command(OUTPUT ${bundle}
-    COMMAND ${CMAKE_COMMAND} -E copy ${source} ${softforce_web_dir}
+    COMMAND ${CMAKE_COMMAND} -E copy ${source} ${imports} ${softforce_web_dir}
     COMMAND ${softforce_web_dir}/node_modules/.bin/esbuild ${softforce_web_dir}/${name}.js --bundle --minify --format=iife
             --target=es2020 --charset=ascii --legal-comments=inline --log-level=warning --outfile=${bundle}
-    DEPENDS ${source} softforce_three ${softforce_web_dir}/fetched
+    DEPENDS ${source} ${imports} softforce_three ${softforce_web_dir}/fetched
     COMMENT "Putting web/${name}.js and three.js into one script"
     VERBATIM)
 endfunction()

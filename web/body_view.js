@@ -1,4 +1,4 @@
-// The body of a run in three dimensions: its deformed surface in the frames that the report holds,
+// The body of a run in three dimensions: its deformed surface in the frames that it is given,
 // coloured by displacement, with forces, markers, cables and the robot's frame.
 import {
   AmbientLight, BackSide, BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry,
@@ -13,12 +13,12 @@ const VIRIDIS = ['#440154', '#443983', '#31688e', '#21918c', '#35b779', '#90d743
 const AXES = [['x', '#d55e00'], ['y', '#009e73'], ['z', '#0072b2']];
 const FRAMES_PER_SECOND = 15;  // when playing
 
-function decode(text, Type) {
+export function decode(text, Type) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   return new Type(bytes.buffer);
 }
 
-function element(tag, properties, ...children) {
+export function element(tag, properties, ...children) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
   return made;
@@ -48,7 +48,7 @@ function roundUp(value) {
   return [1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10].map((digit) => digit * power).find((step) => step >= value * (1 - 1e-9));
 }
 
-class BodyView {
+export class BodyView {
   constructor(place, data) {
     this.place = place;
     this.data = data;
@@ -395,16 +395,4 @@ class BodyView {
     }
     button.textContent = this.timer ? 'Pause' : 'Play';
   }
-}
-
-const place = document.getElementById('view');
-try {
-  new BodyView(place, JSON.parse(document.getElementById('body-data').textContent));
-  place.dataset.ready = 'yes';
-} catch (error) {
-  place.replaceChildren(element('p', {
-    className: 'soft',
-    textContent: `The 3-D view needs a browser with WebGL (${error.message}).`,
-  }));
-  place.dataset.ready = 'no';
 }

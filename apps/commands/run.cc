@@ -24,6 +24,8 @@ struct RunArguments {
   std::string method, allocation, force_walk;
   std::string duration, record;
   std::string draw = "all";
+  int serve = -1;
+  pipeline::RunControls controls;
   LiveArguments live;
   bool no_overlay = false;
   bool no_report = false;
@@ -94,8 +96,11 @@ int Run(RunArguments* arguments) {
   options.layers = pipeline::ParseOverlayLayers(arguments->draw, "--draw");
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
+  if (arguments->serve >= 0) options.serve_port = arguments->serve;
   options.sources = ParseCameraSources(arguments->cameras);
-  options.stop = StopOnSignal();
+  options.stop = &arguments->controls.stop;
+  options.controls = &arguments->controls;
+  StopOnSignal(&arguments->controls.stop);
   const pipeline::RunReport report = pipeline::Run(arguments->scene, options);
   fmt::print("{}", report.FullReport());
   return report.usable ? 0 : 1;
@@ -162,6 +167,10 @@ Command AddRun(CLI::App* program) {
                   "What the overlay shows: all, none, or names separated by commas, from " +
                       pipeline::OverlayLayerNames() + "; with a minus sign: all but these")
       ->capture_default_str();
+  app->add_option("--serve", arguments->serve,
+                  "PORT: show the run on a page for browsers of this machine while it goes on; 0: "
+                  "any port that is free. Its address and the token for its buttons are printed")
+      ->check(CLI::Range(0, 65535));
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
   app->add_flag("--no-report", arguments->no_report, "Do not write report.html");
   app->add_flag("--vtu", arguments->options.vtu, "Write a ParaView series (results.pvd)");

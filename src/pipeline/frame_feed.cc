@@ -137,14 +137,43 @@ std::optional<vision::FrameSet> FrameFeed::Next() {
 }
 
 void FrameFeed::Record(const vision::FrameSet& set) {
-  if (options_.record.empty()) return;
+  if (options_.controls != nullptr) options_.controls->can_record = options_.record.empty();
+  if (!ToBeRecorded()) {
+    if (recorder_) EndRecording();
+    return;
+  }
   const std::vector<std::string> names = NamesOf(rig_);
   vision::RecorderOptions recorder;
   recorder.wait = true;  // live cameras then drop what is neither recorded nor processed
   for (const std::string& name : names) recorder.sources.push_back(TextOf(sources_, name));
   recorder.time_offsets_s = TimeOffsets();
-  if (!recorder_) recorder_.emplace(options_.record, names, recorder);
+  if (!recorder_) recorder_.emplace(RecordFolder(), names, recorder);
+  if (options_.controls != nullptr) options_.controls->recording = true;
   recorder_->Add(set);
+}
+
+bool FrameFeed::ToBeRecorded() const {
+  return !options_.record.empty() || (options_.controls != nullptr && options_.controls->record);
+}
+
+std::filesystem::path FrameFeed::RecordFolder() {
+  if (!options_.record.empty()) return options_.record;
+  std::filesystem::path folder;
+  do {
+    folder = options_.out / fmt::format("recording-{}", ++recordings_);
+  } while (std::filesystem::exists(folder));
+  return folder;
+}
+
+void FrameFeed::EndRecording() {
+  recorder_->Finish();
+  if (options_.controls != nullptr) options_.controls->recording = false;
+  if (options_.record.empty()) {
+    const std::filesystem::path folder = options_.out / fmt::format("recording-{}", recordings_);
+    recorded_.push_back(fmt::format("recorded on request: {}, {}", folder.string(),
+                                    recorder_->Report().BriefReport()));
+    recorder_.reset();
+  }
 }
 
 std::vector<double> FrameFeed::TimeOffsets() const {
@@ -160,7 +189,7 @@ std::vector<double> FrameFeed::TimeOffsets() const {
 
 void FrameFeed::Finish() {
   if (live_) source_->Stop();
-  if (recorder_) recorder_->Finish();
+  if (recorder_) EndRecording();
 }
 
 int FrameFeed::expected_frames() const {
@@ -185,7 +214,9 @@ std::vector<std::string> FrameFeed::ShortOf() const {
 }
 
 std::vector<std::string> FrameFeed::Messages() const {
-  return watch_ ? watch_->Messages() : std::vector<std::string>();
+  std::vector<std::string> messages = watch_ ? watch_->Messages() : std::vector<std::string>();
+  messages.insert(messages.end(), recorded_.begin(), recorded_.end());
+  return messages;
 }
 
 }  // namespace softforce::pipeline

@@ -56,6 +56,9 @@ class FrameFeed {
  private:
   std::optional<vision::FrameSet> Take();
   void Record(const vision::FrameSet& set);
+  bool ToBeRecorded() const;
+  std::filesystem::path RecordFolder();
+  void EndRecording();
   void RefuseToRecordAPart() const;
   bool Stopped() const { return options_.stop != nullptr && *options_.stop; }
 
@@ -67,6 +70,8 @@ class FrameFeed {
   std::unique_ptr<vision::FrameSource> source_;
   std::deque<vision::FrameSet> kept_;  // looked at, not yet given
   std::optional<vision::Recorder> recorder_;
+  int recordings_ = 0;                 // on request
+  std::vector<std::string> recorded_;  // on request, in words for a person
   std::optional<SourceWatch> watch_;
   bool stopped_ = false;  // from outside, before the end
 };

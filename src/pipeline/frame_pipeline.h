@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <string>
@@ -15,6 +16,7 @@ namespace softforce::pipeline {
 // A frame on its way through a run. Each stage reads what those before it have set.
 struct FrameInWork {
   vision::FrameSet set;
+  std::chrono::steady_clock::time_point taken_up;  // when the run had its pictures
   std::vector<CameraDetections> detections;
   std::vector<std::vector<vision::Tag>> fiducials;  // per camera; empty: not looked for
   FrameResult result;

@@ -112,12 +112,9 @@ std::vector<std::string> Caption(const scene::Scene& scene, const FrameResult& r
 OverlayVideo::OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene,
                            const World& world, const camera::Rig& rig, int width,
                            const OverlayLayers& layers)
-    : scene_(scene),
-      world_(world),
-      rig_(rig),
-      width_(width),
-      layers_(layers),
-      writer_(file, kOverlayRate) {}
+    : scene_(scene), world_(world), rig_(rig), width_(width), layers_(layers) {
+  if (!file.empty()) writer_.emplace(file, kOverlayRate);
+}
 
 cv::Mat OverlayVideo::Draw(const FrameInWork& frame) const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + frame.u;
@@ -164,7 +161,7 @@ void OverlayVideo::Remember(const FrameResult& result) {
 
 void OverlayVideo::Add(const FrameResult& result, const cv::Mat& drawn) {
   if (!layers_.chart) {
-    writer_.Add(drawn);
+    writer_->Add(drawn);
     return;
   }
   if (!std::isfinite(first_s_)) first_s_ = result.time_s;
@@ -176,7 +173,7 @@ void OverlayVideo::Add(const FrameResult& result, const cv::Mat& drawn) {
               render::DrawForceChart({drawn.cols, height}, history_,
                                      std::max(result.time_s, first_s_ + kLeastSpan), span),
               with_chart);
-  writer_.Add(with_chart);
+  writer_->Add(with_chart);
 }
 
 }  // namespace softforce::pipeline

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "pipeline/frame_pipeline.h"
@@ -15,7 +16,7 @@ namespace softforce::pipeline {
 // and the forces over time below them.
 class OverlayVideo {
  public:
-  // World, rig and scene must outlive it.
+  // World, rig and scene must outlive it. Without a file it only draws.
   OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene, const World& world,
                const camera::Rig& rig, int width, const OverlayLayers& layers);
 
@@ -24,7 +25,7 @@ class OverlayVideo {
 
   // Adds a frame with its pictures as drawn; one after the other.
   void Add(const FrameResult& result, const cv::Mat& drawn);
-  void Commit() { writer_.Commit(); }
+  void Commit() { writer_->Commit(); }
 
  private:
   void Remember(const FrameResult& result);
@@ -34,7 +35,7 @@ class OverlayVideo {
   const camera::Rig& rig_;
   int width_;
   OverlayLayers layers_;
-  vision::VideoWriter writer_;
+  std::optional<vision::VideoWriter> writer_;
   std::vector<render::ChartSeries> history_;  // of the time that the chart shows
   double first_s_ = NAN;
 };

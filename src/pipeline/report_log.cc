@@ -13,27 +13,6 @@ namespace {
 constexpr double kSigmas = 1.959964;  // of a band that holds 95 %
 constexpr int kPictureWidth = 1280;   // px
 constexpr int kJpegQuality = 82;      // %
-constexpr int kFineNodes = 20000;     // beyond, curved triangles are shown by their corners alone
-
-using Triangles = std::vector<Eigen::Vector3i>;
-
-// Flat triangles over the nodes of the mesh; curved ones are cut in four.
-Triangles FlatTriangles(const mesh::Surface& surface) {
-  const Eigen::MatrixXi& t = surface.triangles;
-  const bool cut = surface.order() == 2 && 2 * t.cols() <= kFineNodes;  // two nodes per triangle
-  Triangles flat;
-  for (Eigen::Index i = 0; i < t.cols(); ++i) {
-    if (!cut) {
-      flat.emplace_back(t(0, i), t(1, i), t(2, i));
-      continue;
-    }
-    flat.emplace_back(t(0, i), t(3, i), t(5, i));
-    flat.emplace_back(t(3, i), t(1, i), t(4, i));
-    flat.emplace_back(t(5, i), t(4, i), t(2, i));
-    flat.emplace_back(t(3, i), t(4, i), t(5, i));
-  }
-  return flat;
-}
 
 void Band(double value, double sd, report::Extent* extent) {
   extent->Add(value - kSigmas * sd);
@@ -65,9 +44,6 @@ std::string Jpeg(const cv::Mat& picture) {
   return {bytes.begin(), bytes.end()};
 }
 
-// What a force goes by from frame to frame.
-std::string NameOf(const ForceResult& force) { return fmt::format("F{}", force.identity); }
-
 bool IsOk(const FrameResult& result) {
   return result.status == estimation::ForceEstimate::Status::kOk;
 }
@@ -86,24 +62,9 @@ double LargestNorm(const FrameResult& result) {
 
 }  // namespace
 
-ReportLog::ReportLog(const World& world) : world_(world) {
-  const Triangles triangles = FlatTriangles(world.surface);
-  const Eigen::Matrix3Xd& X = world.mesh().nodes;
-  std::vector<int> place(static_cast<size_t>(X.cols()), -1);  // of each node among body_nodes_
-  body_.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
-  for (size_t t = 0; t < triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      int& node = place[static_cast<size_t>(triangles[t](k))];
-      if (node < 0) {
-        node = static_cast<int>(body_nodes_.size());
-        body_nodes_.push_back(triangles[t](k));
-      }
-      body_.triangles(k, static_cast<Eigen::Index>(t)) = node;
-    }
-  }
-  body_.nodes = X(Eigen::all, body_nodes_).cast<float>();
+ReportLog::ReportLog(const World& world) : world_(world), body_(world) {
   // Three coordinates of two bytes for each node, as the page has them.
-  const double per_view = 6.0 * static_cast<double>(body_nodes_.size());
+  const double per_view = 6.0 * static_cast<double>(body_.shape().nodes.cols());
   max_views_ = static_cast<size_t>(
       std::clamp(static_cast<int>(kViewBytes / per_view), kMinViews, kMaxViews));
 }
@@ -117,7 +78,7 @@ report::RunColumn ReportLog::ColumnOf(const FrameResult& result) {
     column.reduced_chi2.Add(result.chi2 / result.degrees_of_freedom);
   }
   for (const ForceResult& force : result.forces) {
-    const std::string name = NameOf(force);
+    const std::string name = ForceName(force);
     auto known = std::find(forces_.begin(), forces_.end(), name);
     if (known == forces_.end()) {
       if (forces_.size() == kMaxForces) {
@@ -143,35 +104,11 @@ report::RunColumn ReportLog::ColumnOf(const FrameResult& result) {
   return column;
 }
 
-report::BodyView ReportLog::ViewOf(const FrameInWork& frame) const {
-  report::BodyView view;
-  const FrameResult& result = frame.result;
-  view.frame = result.frame;
-  view.time_s = result.time_s;
-  view.u = frame.u(Eigen::all, body_nodes_).cast<float>();
-  for (const ForceResult& force : result.forces) {
-    view.forces.push_back({NameOf(force), force.position.cast<float>(), force.force.cast<float>(),
-                           static_cast<float>(force.NormSd())});
-  }
-  for (const MarkerResult& marker : result.markers) {
-    const Eigen::Vector3d& p = marker.measured.allFinite() ? marker.measured : marker.model;
-    if (!p.allFinite()) continue;
-    view.markers.push_back({marker.id, static_cast<int>(marker.status), p.cast<float>()});
-  }
-  const Eigen::Matrix3Xd x = world_.mesh().nodes + frame.u;
-  for (const fem::Cable& cable : world_.solver->body().cables) {
-    view.cables.emplace_back();
-    for (const mesh::NodalWeights& point : cable.points) {
-      view.cables.back().push_back(point.Apply(x).cast<float>());
-    }
-    view.cables.back().push_back(cable.guide.cast<float>());
-  }
-  return view;
-}
-
 void ReportLog::KeepKeyFrames(const FrameInWork& frame) {
   const FrameResult& result = frame.result;
-  const auto key = [&](const char* label) { return KeyFrame{label, ViewOf(frame), frame.overlay}; };
+  const auto key = [&](const char* label) {
+    return KeyFrame{label, body_.ViewOf(frame), frame.overlay};
+  };
   if (!first_) first_ = key("first frame");
   if (LargestNorm(result) > largest_norm_) {
     largest_norm_ = LargestNorm(result);
@@ -195,7 +132,7 @@ void ReportLog::KeepView(const FrameInWork& frame) {
     views_.resize(kept);
     if (frames_ % stride_ != 0) return;
   }
-  views_.push_back(ViewOf(frame));
+  views_.push_back(body_.ViewOf(frame));
 }
 
 void ReportLog::Add(const FrameInWork& frame) {
@@ -232,13 +169,8 @@ void ReportLog::Fill(report::RunRecord* record) const {
   record->forces = forces_;
   record->forces_left_out = static_cast<int>(left_out_.size());
   record->markers = marker_ids_;
-  for (const MarkerStatus status : {MarkerStatus::kSeen, MarkerStatus::kOneCamera,
-                                    MarkerStatus::kHidden, MarkerStatus::kRejected}) {
-    std::string name = Name(status);
-    std::replace(name.begin(), name.end(), '_', ' ');
-    record->marker_statuses.push_back(name);
-  }
-  record->body = body_;
+  record->marker_statuses = MarkerStatusNames();
+  record->body = body_.shape();
   record->views = views_;
   for (const KeyFrame& key : KeyFrames()) {
     const auto same =

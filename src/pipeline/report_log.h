@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/body_views.h"
 #include "pipeline/frame_pipeline.h"
 #include "softforce/pipeline/world.h"
 #include "softforce/report/run_report.h"
@@ -40,14 +41,12 @@ class ReportLog {
   };
 
   report::RunColumn ColumnOf(const FrameResult& result);
-  report::BodyView ViewOf(const FrameInWork& frame) const;
   void KeepKeyFrames(const FrameInWork& frame);
   void KeepView(const FrameInWork& frame);
   std::vector<KeyFrame> KeyFrames() const;  // in the order of the frames, each once
 
   const World& world_;
-  report::BodyShape body_;
-  std::vector<int> body_nodes_;  // of the mesh, that the body's are
+  const BodyViews body_;
   size_t max_views_;
 
   report::RunColumns columns_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "pipeline/candidate_count.h"
 #include "pipeline/error_index.h"
@@ -20,6 +21,18 @@ namespace {
 // Of a recording; enough that the threads go on drawing while one frame takes long to estimate.
 constexpr int kFramesPerThread = 4;
 constexpr int kLiveFramesWaiting = 2;
+constexpr std::chrono::milliseconds kPausePoll{20};
+
+spdlog::logger Logger() {
+  spdlog::logger log("softforce", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  log.set_pattern("%n: %v");
+  return log;
+}
+
+// To the screen alone: who reads it may stop the run.
+void TellAddress(const LiveView& view) {
+  Logger().info("live page: {}#token={}", view.Url(), view.token());
+}
 
 }  // namespace
 
@@ -34,17 +47,21 @@ RunJob::RunJob(const std::filesystem::path& scene_file, const RunOptions& option
       standing_(
           source_->Start(options.show_progress ? base::TellBesideProgress : SourceWatch::Tell())),
       tracker_(scene_, world_, source_->rig(), standing_.T_rig_robot, standing_.covariance,
-               Corrected(options.tracker, correction_)) {}
+               Corrected(options.tracker, correction_)),
+      tare_(options.controls) {}
 
 std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress) {
   using Order = Stage::Order;
   std::vector<Stage> stages{
       {"detect", source_->DetectOrder(), [this](FrameInWork* frame) { source_->Detect(frame); }},
-      {"estimate", Order::kInOrder,
-       [this](FrameInWork* frame) { source_->Estimate(world_, frame, &tracker_); }}};
+      {"estimate", Order::kInOrder, [this](FrameInWork* frame) {
+         source_->Estimate(world_, frame, &tracker_);
+         tare_.Apply(&frame->result);
+       }}};
   for (Stage& stage : outputs->Stages()) stages.push_back(std::move(stage));
   stages.push_back({"report", Order::kInOrder, [this, progress](FrameInWork* frame) {
                       tally_.Add(frame->result);
+                      if (live_view_) live_view_->Show(*frame);
                       if (progress != nullptr) progress->Update(tally_.report.frames, Note());
                     }});
   return stages;
@@ -56,10 +73,19 @@ std::string RunJob::Note() const {
   return fmt::format("{} waiting, {} dropped", source.queued, source.dropped);
 }
 
+bool RunJob::Next(FrameInWork* frame) {
+  const auto stopped = [&] { return options_.stop != nullptr && *options_.stop; };
+  while (options_.controls != nullptr && options_.controls->pause && !stopped()) {
+    std::this_thread::sleep_for(kPausePoll);
+  }
+  const bool more = source_->Next(frame);
+  frame->taken_up = std::chrono::steady_clock::now();
+  return more;
+}
+
 void RunJob::ProcessFrames(RunOutputs* outputs) {
   base::Progress progress("frames", source_->expected_frames());
-  const FrameInput input{source_->StageName(),
-                         [this](FrameInWork* frame) { return source_->Next(frame); }};
+  const FrameInput input{source_->StageName(), [this](FrameInWork* frame) { return Next(frame); }};
   const std::vector<Stage> stages = Stages(outputs, options_.show_progress ? &progress : nullptr);
   const int threads = options_.threads > 0 ? options_.threads : DefaultThreads();
   if (source_->live()) {
@@ -88,8 +114,7 @@ void RunJob::WriteSummaries(const RunOutputs& outputs) {
 
 void RunJob::LogSetUp() const {
   if (!options_.show_progress) return;
-  spdlog::logger log("softforce", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-  log.set_pattern("%n: %v");
+  spdlog::logger log = Logger();
   log.info("{}: {} cells of order {}, {} nodes; {} markers, {} forces, {} cables", scene_.name,
            world_.mesh().num_elements(), world_.mesh().order(), world_.mesh().num_nodes(),
            world_.markers.size(), world_.sites.size(), scene_.actuators.size());
@@ -106,6 +131,10 @@ void RunJob::LogSetUp() const {
 
 RunReport RunJob::Finish() {
   const auto start = std::chrono::steady_clock::now();
+  if (options_.serve_port) {
+    live_view_.emplace(options_, scene_, world_, *source_, clock_);
+    TellAddress(*live_view_);
+  }
   PrepareFolder(options_.out);
   LogSetUp();
   const CandidateCount count = CountCandidates(world_);
@@ -125,9 +154,12 @@ RunReport RunJob::Finish() {
   report.source = source_->Report();
   report.recorded = source_->Recorded();
   report.has_pictures = !source_->rig().cameras.empty();
-  tally_.Judge(source_->Messages(), source_->ShortOf());
+  std::vector<std::string> messages = source_->Messages();
+  messages.insert(messages.end(), tare_.messages().begin(), tare_.messages().end());
+  tally_.Judge(messages, source_->ShortOf());
   outputs.Commit();
   WriteSummaries(outputs);
+  if (live_view_) live_view_->End(report);
   return report;
 }
 

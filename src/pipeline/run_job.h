@@ -5,10 +5,12 @@
 #include <optional>
 
 #include "pipeline/frame_pipeline.h"
+#include "pipeline/live_view.h"
 #include "pipeline/marker_source.h"
 #include "pipeline/mesh_correction.h"
 #include "pipeline/run_outputs.h"
 #include "pipeline/run_tally.h"
+#include "pipeline/tare.h"
 #include "softforce/base/progress.h"
 #include "softforce/pipeline/run.h"
 
@@ -25,6 +27,7 @@ class RunJob {
  private:
   std::vector<Stage> Stages(RunOutputs* outputs, base::Progress* progress);
   std::string Note() const;
+  bool Next(FrameInWork* frame);
   void ProcessFrames(RunOutputs* outputs);
   void LogSetUp() const;
   void WriteSummaries(const RunOutputs& outputs);
@@ -37,9 +40,11 @@ class RunJob {
   const double index_w_;
   const Standing standing_;
   Tracker tracker_;
+  Tare tare_;
 
   StageClock clock_;
   RunTally tally_;
+  std::optional<LiveView> live_view_;  // last: its thread looks at the others
 };
 
 }  // namespace softforce::pipeline

@@ -26,7 +26,7 @@ void StageClock::BookQueue(const std::string& stage, int waiting) {
   booked.longest_queue = std::max(booked.longest_queue, waiting);
 }
 
-std::vector<StageTimes> StageClock::Report() const {
+std::vector<StageTimes> StageClock::Report(size_t newest) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<StageTimes> report;
   for (const Stage& stage : stages_) {
@@ -38,7 +38,9 @@ std::vector<StageTimes> StageClock::Report() const {
       times.queue_mean = static_cast<double>(stage.waiting) / static_cast<double>(stage.taken_up);
     }
     times.queue_max = stage.longest_queue;
-    std::vector<float> sorted = stage.times_ms;
+    const size_t count = std::min(newest, stage.times_ms.size());
+    std::vector<float> sorted(stage.times_ms.end() - static_cast<std::ptrdiff_t>(count),
+                              stage.times_ms.end());
     std::sort(sorted.begin(), sorted.end());
     const auto at = [&](double share) -> double {
       if (sorted.empty()) return 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ class StageClock {
   // Books how many frames wait for the stage, while it takes one up.
   void BookQueue(const std::string& stage, int waiting);
 
-  std::vector<StageTimes> Report() const;  // in the order of first use
+  // In the order of first use; of so many of the newest times of each.
+  std::vector<StageTimes> Report(size_t newest = std::numeric_limits<size_t>::max()) const;
 
  private:
   class Booking {

@@ -73,6 +73,12 @@ std::string Point(const Eigen::Vector3f& p) {
   return fmt::format("{},{},{}", JsonNumber(p.x()), JsonNumber(p.y()), JsonNumber(p.z()));
 }
 
+float Largest(const BodyView& view) {
+  return view.u.size() == 0 ? 0 : view.u.cwiseAbs().maxCoeff();
+}
+
+float StepOf(float largest) { return largest > 0 ? largest / kSteps : 1; }
+
 std::string ViewData(const BodyView& view, float step) {
   const Eigen::Matrix3Xf rounded = (view.u / step).array().round();
   return fmt::format(
@@ -122,15 +128,18 @@ std::string ChartData(const RunRecord& record) {
 
 std::string BodyData(const RunRecord& record) {
   float largest = 0;
-  for (const BodyView& view : record.views) {
-    largest = std::max(largest, view.u.cwiseAbs().maxCoeff());
-  }
-  const float step = largest > 0 ? largest / kSteps : 1;
+  for (const BodyView& view : record.views) largest = std::max(largest, Largest(view));
+  const float step = StepOf(largest);
   return fmt::format(
       "{{\"nodes\":{},\"triangles\":{},\"step\":{},\"first\":{},\"statuses\":{},\"views\":{}}}",
       Bytes<float>(record.body.nodes), Bytes<std::uint32_t>(record.body.triangles),
       JsonNumber(step), record.first_view, JsonList(record.marker_statuses, JsonText),
       JsonList(record.views, [&](const BodyView& view) { return ViewData(view, step); }));
+}
+
+std::string OneView(const BodyView& view) {
+  const float step = StepOf(Largest(view));
+  return fmt::format("{{\"step\":{},\"view\":{}}}", JsonNumber(step), ViewData(view, step));
 }
 
 }  // namespace softforce::report

@@ -11,4 +11,7 @@ namespace softforce::report {
 std::string ChartData(const RunRecord& record);
 std::string BodyData(const RunRecord& record);
 
+// One view for BodyData's body, with the `step` (m) that its displacements are counted in.
+std::string OneView(const BodyView& view);
+
 }  // namespace softforce::report

@@ -10,6 +10,7 @@
 
 #include "softforce/pipeline/mesh_convergence.h"
 #include "softforce/pipeline/overlay_layers.h"
+#include "softforce/pipeline/run_controls.h"
 #include "softforce/pipeline/stage_times.h"
 #include "softforce/pipeline/tracker.h"
 #include "softforce/vision/live_cameras.h"
@@ -44,6 +45,9 @@ struct RunOptions {
   TrackerOptions tracker;  // model errors: for the given mesh; less of them is left if corrected
   // Set from outside: end after the frames in work, with complete files.
   const std::atomic<bool>* stop = nullptr;
+  std::optional<int> serve_port;  // of the live page, on this machine; 0: any; nothing: no page
+  // What viewers ask for while it runs; nullptr: nobody does.
+  RunControls* controls = nullptr;
 
   void Check() const;  // throws InputError naming the option
 };
