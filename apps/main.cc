@@ -20,9 +20,9 @@ int RunProgram(int argc, char** argv) {
       softforce::apps::AddRun(&program),      softforce::apps::AddCalibrate(&program),
       softforce::apps::AddDesign(&program),   softforce::apps::AddIdentify(&program),
       softforce::apps::AddMesh(&program),     softforce::apps::AddRecord(&program),
-      softforce::apps::AddRegister(&program), softforce::apps::AddRig(&program),
-      softforce::apps::AddSimulate(&program), softforce::apps::AddTarget(&program),
-      softforce::apps::AddValidate(&program)};
+      softforce::apps::AddRegister(&program), softforce::apps::AddRender(&program),
+      softforce::apps::AddRig(&program),      softforce::apps::AddSimulate(&program),
+      softforce::apps::AddTarget(&program),   softforce::apps::AddValidate(&program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

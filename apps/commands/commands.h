@@ -18,6 +18,7 @@ Command AddIdentify(CLI::App* program);
 Command AddMesh(CLI::App* program);
 Command AddRecord(CLI::App* program);
 Command AddRegister(CLI::App* program);
+Command AddRender(CLI::App* program);
 Command AddRig(CLI::App* program);
 Command AddRun(CLI::App* program);
 Command AddSimulate(CLI::App* program);

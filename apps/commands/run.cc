@@ -29,6 +29,7 @@ struct RunArguments {
   LiveArguments live;
   bool no_overlay = false;
   bool no_report = false;
+  bool no_frames = false;
   pipeline::RunOptions options;
 };
 
@@ -93,6 +94,7 @@ int Run(RunArguments* arguments) {
   options.out = arguments->out;
   options.overlay = !arguments->no_overlay;
   options.report = !arguments->no_report;
+  options.frames = !arguments->no_frames;
   options.layers = pipeline::ParseOverlayLayers(arguments->draw, "--draw");
   options.mesh_aim = ParseMeshAim(arguments->correct_mesh);
   if (!arguments->frames.empty()) ParseFrames(arguments->frames, &options);
@@ -173,6 +175,8 @@ Command AddRun(CLI::App* program) {
       ->check(CLI::Range(0, 65535));
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
   app->add_flag("--no-report", arguments->no_report, "Do not write report.html");
+  app->add_flag("--no-frames", arguments->no_frames,
+                "Do not write frames.bin, from which `softforce render` draws the overlay again");
   app->add_flag("--vtu", arguments->options.vtu, "Write a ParaView series (results.pvd)");
   AddLiveOptions(app, &arguments->live);
   return {app, [arguments] { return Run(arguments.get()); }};

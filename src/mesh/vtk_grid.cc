@@ -17,12 +17,22 @@
 namespace softforce::mesh {
 namespace {
 
-vtkNew<vtkDoubleArray> ToVtk(const Eigen::Matrix3Xd& vectors) {
+// A tuple for each column.
+vtkNew<vtkDoubleArray> ToVtk(const Eigen::MatrixXd& columns) {
   vtkNew<vtkDoubleArray> array;
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(vectors.cols());
-  std::copy_n(vectors.data(), vectors.size(), array->GetPointer(0));
+  array->SetNumberOfComponents(static_cast<int>(columns.rows()));
+  array->SetNumberOfTuples(columns.cols());
+  std::copy_n(columns.data(), columns.size(), array->GetPointer(0));
   return array;
+}
+
+void AddPointFields(const std::vector<PointField>& fields, vtkUnstructuredGrid* grid) {
+  for (const PointField& field : fields) {
+    assert(field.values.cols() == grid->GetNumberOfPoints());
+    const auto array = ToVtk(field.values);
+    array->SetName(field.name.c_str());
+    grid->GetPointData()->AddArray(array);
+  }
 }
 
 std::optional<int> AsInteger(const std::string& text) {
@@ -68,12 +78,7 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
     grid->InsertNextCell(mesh.order() == 2 ? VTK_QUADRATIC_TETRA : VTK_TETRA, mesh.elements.rows(),
                          nodes.data());
   }
-  for (const PointField& field : fields) {
-    assert(field.values.cols() == mesh.nodes.cols());
-    const auto array = ToVtk(field.values);
-    array->SetName(field.name.c_str());
-    grid->GetPointData()->AddArray(array);
-  }
+  AddPointFields(fields, grid);
   AddCellFields(cell_fields, grid);
   if (mesh.region_names.size() > 1 || (!mesh.region_names.empty() && mesh.region_names[0] != "")) {
     const std::vector<int> values = RegionValues(mesh.region_names);
@@ -108,6 +113,18 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const Surface& surface, const Eig
                          surface.triangles.rows(), nodes.data());
   }
   AddCellFields(fields, grid);
+  return grid;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const Eigen::Matrix3Xd& places,
+                                               const std::vector<PointField>& fields) {
+  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(ToVtk(places));
+  grid->SetPoints(points);
+  grid->Allocate(places.cols());
+  for (vtkIdType i = 0; i < places.cols(); ++i) grid->InsertNextCell(VTK_VERTEX, 1, &i);
+  AddPointFields(fields, grid);
   return grid;
 }
 

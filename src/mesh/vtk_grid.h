@@ -19,4 +19,8 @@ vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const TetMesh& mesh,
 vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const Surface& surface, const Eigen::Matrix3Xd& x,
                                                const std::vector<CellField>& fields);
 
+// Points, each a cell of its own.
+vtkSmartPointer<vtkUnstructuredGrid> ToVtkGrid(const Eigen::Matrix3Xd& places,
+                                               const std::vector<PointField>& fields);
+
 }  // namespace softforce::mesh

@@ -42,6 +42,12 @@ void WriteSurfaceVtu(const std::filesystem::path& path, const Surface& surface,
   WriteWith(*writer.Get(), path, ToVtkGrid(surface, x, fields));
 }
 
+void WritePointsVtu(const std::filesystem::path& path, const Eigen::Matrix3Xd& places,
+                    const std::vector<PointField>& fields) {
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  WriteWith(*writer.Get(), path, ToVtkGrid(places, fields));
+}
+
 void WriteLegacyVtk(const std::filesystem::path& path, const TetMesh& mesh) {
   vtkNew<vtkUnstructuredGridWriter> writer;
   writer->SetFileTypeToBinary();  // its text has fewer digits than a double

@@ -23,6 +23,8 @@ struct FrameInWork {
   Eigen::Isometry3d T_rig_robot;    // where the rig stands in this frame
   Eigen::Matrix3Xd u;               // m, displacements of the nodes in this frame
   double largest_displacement = 0;  // m, of any node in the frames up to this one
+  Eigen::VectorXd stress;           // Pa, von Mises, at the nodes; empty: not asked for
+  double largest_stress = 0;        // Pa, where its scale ends
   cv::Mat overlay;                  // the picture with everything drawn over it
 };
 

@@ -16,19 +16,21 @@ struct Layer {
   bool OverlayLayers::*on;
 };
 
-constexpr std::array<Layer, 9> kLayers{{{"net", &OverlayLayers::net},
-                                        {"displacement", &OverlayLayers::displacement},
-                                        {"markers", &OverlayLayers::markers},
-                                        {"regions", &OverlayLayers::regions},
-                                        {"candidates", &OverlayLayers::candidates},
-                                        {"forces", &OverlayLayers::forces},
-                                        {"cables", &OverlayLayers::cables},
-                                        {"axes", &OverlayLayers::axes},
-                                        {"chart", &OverlayLayers::chart}}};
+constexpr std::array<Layer, 10> kLayers{{{"net", &OverlayLayers::net},
+                                         {"stress", &OverlayLayers::stress},
+                                         {"displacement", &OverlayLayers::displacement},
+                                         {"markers", &OverlayLayers::markers},
+                                         {"regions", &OverlayLayers::regions},
+                                         {"candidates", &OverlayLayers::candidates},
+                                         {"forces", &OverlayLayers::forces},
+                                         {"cables", &OverlayLayers::cables},
+                                         {"axes", &OverlayLayers::axes},
+                                         {"chart", &OverlayLayers::chart}}};
 
 OverlayLayers Every(bool on) {
   OverlayLayers layers;
   for (const Layer& layer : kLayers) layers.*layer.on = on;
+  layers.stress = false;  // the body has one colour at a time
   return layers;
 }
 

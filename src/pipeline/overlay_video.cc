@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "softforce/fem/stress.h"
 #include "softforce/render/overlay.h"
 
 namespace softforce::pipeline {
@@ -13,6 +14,10 @@ namespace {
 
 constexpr double kOverlayRate = 30;   // frames/s at which overlay.mp4 plays
 constexpr double kLeastScale = 0.1;   // mm, of displacements: below it there is but noise
+constexpr double kLeastStress = 0.1;  // kPa, likewise
+// Of the nodes, that the colours of stress tell apart: it peaks beyond all use at supports and at
+// the rims of loads.
+constexpr double kShownStress = 0.99;
 constexpr double kAxes = 0.15;        // of the body's largest side
 constexpr double kChartSpan = 10;     // s
 constexpr double kLeastSpan = 1;      // s
@@ -62,7 +67,11 @@ void AddBody(const scene::Scene& scene, const World& world, const OverlayLayers&
              const FrameInWork& frame, const Eigen::Matrix3Xd& x, render::OverlayScene* content) {
   content->surface = &world.surface;
   content->x = &x;
-  if (layers.displacement) {
+  if (layers.stress) {
+    content->field =
+        render::SurfaceField{"von Mises stress", "kPa", 1e-3 * frame.stress,
+                             render::RoundUp(std::max(1e-3 * frame.largest_stress, kLeastStress))};
+  } else if (layers.displacement) {
     const double largest_mm = 1e3 * frame.largest_displacement;
     content->field =
         render::SurfaceField{"displacement", "mm", 1e3 * frame.u.colwise().norm().transpose(),
@@ -114,6 +123,18 @@ OverlayVideo::OverlayVideo(const std::filesystem::path& file, const scene::Scene
                            const OverlayLayers& layers)
     : scene_(scene), world_(world), rig_(rig), width_(width), layers_(layers) {
   if (!file.empty()) writer_.emplace(file, kOverlayRate);
+}
+
+void OverlayVideo::AddStress(FrameInWork* frame) {
+  frame->stress = fem::NodalVonMises(world_.solver->body(), frame->u);
+  // Of a cell that is inside out there is no stress; it is drawn as the least.
+  frame->stress = frame->stress.array().isFinite().select(frame->stress, 0);
+  std::vector<double> values(frame->stress.begin(), frame->stress.end());
+  const auto shown = values.begin() +
+                     static_cast<std::ptrdiff_t>(kShownStress * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), shown, values.end());
+  largest_stress_ = std::max(largest_stress_, *shown);
+  frame->largest_stress = largest_stress_;
 }
 
 cv::Mat OverlayVideo::Draw(const FrameInWork& frame) const {

@@ -20,6 +20,10 @@ class OverlayVideo {
   OverlayVideo(const std::filesystem::path& file, const scene::Scene& scene, const World& world,
                const camera::Rig& rig, int width, const OverlayLayers& layers);
 
+  // Whether the frames must pass AddStress, in their order, before they are drawn.
+  bool wants_stress() const { return layers_.stress; }
+  void AddStress(FrameInWork* frame);
+
   // The pictures. May be called from several threads.
   cv::Mat Draw(const FrameInWork& frame) const;
 
@@ -38,6 +42,7 @@ class OverlayVideo {
   std::optional<vision::VideoWriter> writer_;
   std::vector<render::ChartSeries> history_;  // of the time that the chart shows
   double first_s_ = NAN;
+  double largest_stress_ = 0;  // Pa, so far
 };
 
 }  // namespace softforce::pipeline

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/frame_file.h"
 #include "softforce/base/input_error.h"
 #include "softforce/vision/live_cameras.h"
 
@@ -9,12 +10,15 @@ namespace softforce::pipeline {
 namespace {
 
 std::vector<std::string> OldResults(const std::filesystem::path& out) {
-  std::vector<std::string> old{"forces.csv",   "markers.csv", "information.csv", "actuation.csv",
-                               "summary.json", "overlay.mp4", "report.html",     "results.pvd"};
+  std::vector<std::string> old{"forces.csv",    "markers.csv",  "information.csv",
+                               "actuation.csv", "summary.json", "overlay.mp4",
+                               "report.html",   "results.pvd",  kFrameFile};
   std::error_code ignored;  // a folder that is not there has no old frames
   for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {
     const std::string name = entry.path().filename().string();
-    if (name.rfind("frame_", 0) == 0 && entry.path().extension() == ".vtu") {
+    if ((name.rfind("frame_", 0) == 0 || name.rfind("forces_", 0) == 0 ||
+         name.rfind("markers_", 0) == 0) &&
+        entry.path().extension() == ".vtu") {
       old.push_back("vtu/" + name);
     }
   }

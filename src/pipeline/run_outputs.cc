@@ -19,6 +19,9 @@ RunOutputs::RunOutputs(const RunOptions& options, const scene::Scene& scene, con
     overlay_.emplace(options.out / "overlay.mp4", scene, world, rig, options.overlay_width,
                      options.layers);
   }
+  if (options.frames && !rig.cameras.empty()) {
+    frames_.emplace(options.out / kFrameFile, world.mesh().num_nodes());
+  }
   if (options.vtu) series_.emplace(options.out);
   if (options.report) log_.emplace(world);
 }
@@ -31,7 +34,12 @@ std::vector<Stage> RunOutputs::Stages() {
                       largest_displacement_ =
                           std::max(largest_displacement_, frame->u.colwise().norm().maxCoeff());
                       frame->largest_displacement = largest_displacement_;
+                      if (frames_) frames_->Add(*frame);
                     }});
+  if (overlay_ && overlay_->wants_stress()) {
+    stages.push_back(
+        {"stress", Order::kInOrder, [this](FrameInWork* frame) { overlay_->AddStress(frame); }});
+  }
   if (overlay_) {
     stages.push_back({"draw", Order::kAny,
                       [this](FrameInWork* frame) { frame->overlay = overlay_->Draw(*frame); }});
@@ -40,9 +48,8 @@ std::vector<Stage> RunOutputs::Stages() {
                       }});
   }
   if (series_) {
-    stages.push_back({"vtu", Order::kInOrder, [this](FrameInWork* frame) {
-                        series_->Add(frame->set.frame, frame->set.time_s, world_.mesh(), frame->u);
-                      }});
+    stages.push_back({"vtu", Order::kInOrder,
+                      [this](FrameInWork* frame) { series_->Add(*frame, world_.solver->body()); }});
   }
   if (log_) {
     stages.push_back({"page", Order::kInOrder, [this](FrameInWork* frame) { log_->Add(*frame); }});
@@ -52,6 +59,7 @@ std::vector<Stage> RunOutputs::Stages() {
 
 void RunOutputs::Commit() {
   tables_.Commit();
+  if (frames_) frames_->Commit();
   if (overlay_) overlay_->Commit();
   if (series_) series_->Commit();
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/frame_file.h"
 #include "pipeline/frame_pipeline.h"
 #include "pipeline/overlay_video.h"
 #include "pipeline/report_log.h"
@@ -29,6 +30,7 @@ class RunOutputs {
  private:
   const World& world_;
   ResultTables tables_;
+  std::optional<FrameFileWriter> frames_;
   std::optional<OverlayVideo> overlay_;
   double largest_displacement_ = 0;  // m, so far
   std::optional<VtuSeries> series_;

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/frame_pipeline.h"
+#include "pipeline/input_paths.h"
+#include "pipeline/open_recording.h"
 #include "pipeline/result_tables.h"
 #include "softforce/base/version.h"
 
@@ -63,6 +65,22 @@ Json Live(const vision::SourceReport& source) {
   return live;
 }
 
+// Where the inputs are, for `render`. Of live cameras the recording that was made, if one was.
+Json Files(const RunFacts& facts) {
+  Json files{{"scene", PathToKeep(facts.scene.file, facts.options.out)}};
+  if (facts.scene.measured) return files;
+  const bool recorded = facts.tally.report.live && facts.tally.report.recorded;
+  for (const vision::Recording::Source& source : SourcesOf(facts.scene, facts.options.sources)) {
+    if (facts.tally.report.live && !recorded) {
+      files["cameras"][source.camera] = {{"live", source.file.string()}};
+    } else {
+      files["cameras"][source.camera] = PathToKeep(
+          recorded ? facts.options.record / source.camera : source.file, facts.options.out);
+    }
+  }
+  return files;
+}
+
 void AddStages(const std::vector<StageTimes>& stages, Json* json) {
   for (const StageTimes& stage : stages) {
     (*json)["stages_ms"][stage.stage] = {{"count", stage.count}, {"median", stage.median_ms},
@@ -81,6 +99,7 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
   Json json;
   json["softforce"] = base::kVersion;
   json["scene"] = facts.scene.name;
+  json["files"] = Files(facts);
   json["usable"] = facts.tally.report.usable;
   json["frames"] = {{"processed", facts.tally.report.frames},
                     {"with_forces", facts.tally.report.usable_frames},
@@ -129,6 +148,8 @@ void WriteSummary(const RunFacts& facts, const std::filesystem::path& file) {
                      {"registration_frames", options.registration_frames},
                      {"watch_rig", options.watch_rig},
                      {"threads", options.threads > 0 ? options.threads : DefaultThreads()},
+                     {"mesh_aim", Name(options.mesh_aim)},
+                     {"time_offsets_s", options.time_offsets_s},
                      {"overlay", options.overlay && !facts.scene.measured},
                      {"vtu", options.vtu},
                      {"method", estimation::Name(options.tracker.estimator.method)},

@@ -23,6 +23,29 @@ TEST(WriteVtu, NamesTheFieldsAtTheNodes) {
   EXPECT_THAT(ReadText(path), ::testing::HasSubstr("Name=\"displacement_m\""));
 }
 
+TEST(WriteVtu, TakesNumbersAtTheNodesToo) {
+  const TetMesh box = MakeTwoRegionBox(1);
+  const auto path = FreshFolder() / "box.vtu";
+
+  WriteVtu(path, box, {{"von_mises_Pa", Eigen::RowVectorXd::Ones(box.num_nodes())}});
+
+  EXPECT_THAT(ReadText(path), ::testing::HasSubstr("Name=\"von_mises_Pa\""));
+  EXPECT_THAT(ReadText(path), ::testing::Not(::testing::ContainsRegex(
+                                  "Name=\"von_mises_Pa\"[^>]*NumberOfComponents=\"3\"")));
+}
+
+TEST(WritePointsVtu, WritesPointsOrNone) {
+  const auto folder = FreshFolder();
+
+  WritePointsVtu(folder / "two.vtu", Eigen::Matrix3Xd::Ones(3, 2),
+                 {{"force_N", Eigen::Matrix3Xd::Ones(3, 2)}});
+  WritePointsVtu(folder / "none.vtu", Eigen::Matrix3Xd(3, 0),
+                 {{"force_N", Eigen::Matrix3Xd(3, 0)}});
+
+  EXPECT_THAT(ReadText(folder / "two.vtu"), ::testing::HasSubstr("NumberOfPoints=\"2\""));
+  EXPECT_THAT(ReadText(folder / "none.vtu"), ::testing::HasSubstr("NumberOfPoints=\"0\""));
+}
+
 TEST(WriteVtu, KeepsRegionsThatAreNamedByNumbers) {
   TetMesh box = MakeTwoRegionBox(1);
   box.region_names = {"3", "7"};

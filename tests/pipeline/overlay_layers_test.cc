@@ -19,6 +19,12 @@ TEST(OverlayLayers, NamesChooseAndMinusSignsLeaveOut) {
   EXPECT_TRUE(ParseOverlayLayers(OverlayLayerNames(), "--draw").cables);
 }
 
+TEST(OverlayLayers, ShowStressOnlyWhereItIsAskedFor) {
+  EXPECT_FALSE(ParseOverlayLayers("all", "--draw").stress);
+  EXPECT_FALSE(ParseOverlayLayers("-axes", "--draw").stress);
+  EXPECT_TRUE(ParseOverlayLayers("net,stress", "--draw").stress);
+}
+
 TEST(OverlayLayers, RefusesWhatItDoesNotKnow) {
   for (const char* text : {"nets", "net,", "net,-axes", "-net,axes", "-", ","}) {
     EXPECT_THROW(ParseOverlayLayers(text, "--draw"), base::InputError) << text;

@@ -10,10 +10,10 @@
 
 namespace softforce::mesh {
 
-// A vector at every node, for ParaView's "Warp By Vector" and glyphs.
+// A vector at every node, for ParaView's "Warp By Vector" and glyphs, or a number.
 struct PointField {
-  std::string name;         // with its unit: "displacement_m"
-  Eigen::Matrix3Xd values;  // 3×N
+  std::string name;        // with its unit: "displacement_m"
+  Eigen::MatrixXd values;  // 3×N or 1×N
 };
 
 // A number of every cell, for colours; NaN where there is none.
@@ -33,5 +33,9 @@ void WriteVtu(const std::filesystem::path& path, const TetMesh& mesh,
 // The same of the surface alone, with a number for each triangle (nodes at x, 3×N, m).
 void WriteSurfaceVtu(const std::filesystem::path& path, const Surface& surface,
                      const Eigen::Matrix3Xd& x, const std::vector<CellField>& fields);
+
+// Points by themselves (3×N, m; there may be none), for glyphs, and their fields.
+void WritePointsVtu(const std::filesystem::path& path, const Eigen::Matrix3Xd& places,
+                    const std::vector<PointField>& fields);
 
 }  // namespace softforce::mesh

@@ -8,6 +8,7 @@ namespace softforce::pipeline {
 struct OverlayLayers {
   bool net = true;           // edges of the body's surface
   bool displacement = true;  // as colour over the body, with a scale
+  bool stress = false;       // von Mises, as colour over the body instead of displacement
   bool markers = true;       // by status
   bool regions = true;       // 95 % regions of hidden markers, forces and their places
   bool candidates = true;
@@ -17,8 +18,9 @@ struct OverlayLayers {
   bool chart = true;  // forces over time, below the pictures
 };
 
-// "all", "none", or names separated by commas: "net,forces,chart". A name with a minus sign leaves
-// that one out of all: "-axes,-candidates". Throws InputError naming `option`.
+// "all" (but stress, whose place displacement has), "none", or names separated by commas:
+// "net,forces,chart". A name with a minus sign leaves that one out of all: "-axes,-candidates".
+// Throws InputError naming `option`.
 OverlayLayers ParseOverlayLayers(const std::string& text, const std::string& option);
 
 // The names, separated by commas.

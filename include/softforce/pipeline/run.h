@@ -35,6 +35,7 @@ struct RunOptions {
       10;               // that are searched for base fiducials before the first frame is estimated
   int watch_rig = 1;    // look for a bump of the rig in every so many frames; 0: never
   bool overlay = true;  // write overlay.mp4
+  bool frames = true;   // write frames.bin, from which `render` draws
   bool vtu = false;     // write a ParaView series
   bool report = true;   // write report.html
   bool show_progress = true;
