@@ -10,9 +10,9 @@ namespace softforce::pipeline {
 namespace {
 
 std::vector<std::string> OldResults(const std::filesystem::path& out) {
-  std::vector<std::string> old{"forces.csv",    "markers.csv",  "information.csv",
-                               "actuation.csv", "summary.json", "overlay.mp4",
-                               "report.html",   "results.pvd",  kFrameFile};
+  std::vector<std::string> old{"forces.csv",    "markers.csv",  "information.csv", "locations.csv",
+                               "actuation.csv", "summary.json", "overlay.mp4",     "report.html",
+                               "results.pvd",   kFrameFile};
   std::error_code ignored;  // a folder that is not there has no old frames
   for (const auto& entry : std::filesystem::directory_iterator(out / "vtu", ignored)) {
     const std::string name = entry.path().filename().string();

@@ -75,6 +75,32 @@ TEST_F(LocationEstimatorTest, TheFloorIsOfTheNoiseAlone) {
   EXPECT_LT(one.location_sd(), estimate.forces[0].location_sd());  // allows for the model's error
 }
 
+// A force through the sheet moves the markers alike from above and from below.
+TEST_F(LocationEstimatorTest, SaysThatAForceMayActOnTheOtherFace) {
+  std::vector<LocationCandidate> candidates = sheet_.Candidates();
+  const auto below = static_cast<int>(candidates.size());
+  for (int c = 0; c < below; ++c) {
+    const Eigen::Vector3d above = PressedSheet::CandidatePlace(c) + Eigen::Vector3d(0, 0, 0.008);
+    candidates.push_back({"above " + std::to_string(c), sheet_.At(above)});
+  }
+  LocationEstimator both = sheet_.Estimator(PressedSheet::Options(), candidates);
+  LocationEstimator one = sheet_.Estimator(PressedSheet::Options());
+  const Press press{{0.037, 0.061, 0}, {0, 0, 0.1}};
+
+  const LocationEstimate in_doubt = Estimate(&both, {press});
+  const LocationEstimate certain = Estimate(&one, {press});
+
+  ASSERT_TRUE(in_doubt.ok()) << in_doubt.reason;
+  ASSERT_EQ(in_doubt.forces.size(), 1);
+  EXPECT_LT(in_doubt.probability, 0.99);
+  const std::vector<int>& alternatives = in_doubt.forces[0].alternatives;
+  const bool found_above = in_doubt.forces[0].rest.z() > 0.004;
+  EXPECT_TRUE(std::any_of(alternatives.begin(), alternatives.end(),
+                          [&](int c) { return (c >= below) != found_above; }));
+  ASSERT_TRUE(certain.ok()) << certain.reason;
+  EXPECT_GT(certain.probability, 0.99);
+}
+
 TEST_F(LocationEstimatorTest, FindsThreeForces) {
   LocationEstimator estimator = sheet_.Estimator(PressedSheet::Options());
   const std::vector<Press> presses{{{0.03, 0.03, 0}, {0, 0, 0.4}},

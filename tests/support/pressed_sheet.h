@@ -44,7 +44,13 @@ class PressedSheet {
   estimation::LocationEstimator Estimator(
       const estimation::LocationOptions& options,
       estimation::ForceDirection direction = estimation::ForceDirection::kFree) {
-    return {&solver_, surface_, Candidates(direction), options};
+    return Estimator(options, Candidates(direction));
+  }
+
+  estimation::LocationEstimator Estimator(
+      const estimation::LocationOptions& options,
+      const std::vector<estimation::LocationCandidate>& candidates) {
+    return {&solver_, surface_, candidates, options};
   }
 
   static estimation::LocationOptions Options(
@@ -91,6 +97,10 @@ class PressedSheet {
 
   const fem::Body& body() const { return body_; }
 
+  mesh::SurfacePoint At(const Eigen::Vector3d& place) const {
+    return mesh::ClosestSurfacePoint(surface_, body_.mesh.nodes, place).at;
+  }
+
  private:
   static fem::Body MakeSheet(int cells) {
     fem::Body sheet;
@@ -101,10 +111,6 @@ class PressedSheet {
       if (x < 1e-9 || x > 0.1 - 1e-9) sheet.fixed_nodes.push_back(node);
     }
     return sheet;
-  }
-
-  mesh::SurfacePoint At(const Eigen::Vector3d& place) const {
-    return mesh::ClosestSurfacePoint(surface_, body_.mesh.nodes, place).at;
   }
 
   std::vector<mesh::NodalWeights> Markers() const {
