@@ -30,6 +30,7 @@ set(headers_spdlog::spdlog "^spdlog/")
 set(headers_OpenSSL::Crypto "^openssl/")
 set(headers_TBB::tbb "^oneapi/tbb/")
 set(headers_CLI11::CLI11 "^CLI/")
+set(headers_X11::X11 "^X11/")
 set(headers_Httplib::Httplib "^httplib\\.h$")
 
 set(failures "")

@@ -1,6 +1,7 @@
 # Every outside library, found once. All come from Debian 12 packages; scripts/lib/packages lists them.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d aruco)
+find_package(X11 REQUIRED)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs videoio calib3d aruco highgui)
 set(flags_before_visp "${CMAKE_CXX_FLAGS}")
 find_package(VISP 3.5 REQUIRED COMPONENTS visp_core visp_vision visp_visual_features)
 set(CMAKE_CXX_FLAGS "${flags_before_visp}")  # ViSP adds -fopenmp to everything

@@ -173,6 +173,9 @@ Command AddRun(CLI::App* program) {
                   "PORT: show the run on a page for browsers of this machine while it goes on; 0: "
                   "any port that is free. Its address and the token for its buttons are printed")
       ->check(CLI::Range(0, 65535));
+  app->add_flag("--view", arguments->options.view,
+                "Show the run in a window while it goes on, with keys for pause, tare, record, "
+                "screenshot and quit");
   app->add_flag("--no-overlay", arguments->no_overlay, "Do not write overlay.mp4");
   app->add_flag("--no-report", arguments->no_report, "Do not write report.html");
   app->add_flag("--no-frames", arguments->no_frames,

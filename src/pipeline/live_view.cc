@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "softforce/report/live_page.h"
 #include "softforce/serve/low_priority.h"
@@ -24,26 +23,9 @@ constexpr int kPictureWidth = 1280;  // px
 constexpr int kJpegQuality = 75;     // %
 
 std::string Jpeg(const cv::Mat& picture) {
-  cv::Mat small = picture;
-  if (picture.cols > kPictureWidth) {
-    const double factor = static_cast<double>(kPictureWidth) / picture.cols;
-    cv::resize(picture, small, {}, factor, factor, cv::INTER_AREA);
-  }
   std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", small, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   return {bytes.begin(), bytes.end()};
-}
-
-// What pages need of a frame; what was detected in it stays behind.
-std::shared_ptr<const FrameInWork> CopyOf(const FrameInWork& frame) {
-  auto copy = std::make_shared<FrameInWork>();
-  copy->set = frame.set;
-  copy->result = frame.result;
-  copy->T_rig_robot = frame.T_rig_robot;
-  copy->u = frame.u;
-  copy->largest_displacement = frame.largest_displacement;
-  copy->overlay = frame.overlay;
-  return copy;
 }
 
 }  // namespace
@@ -58,8 +40,7 @@ LiveView::LiveView(const RunOptions& options, const scene::Scene& scene, const W
       run_(serve::MakeToken()),
       body_(world) {
   if (!source.rig().cameras.empty()) {
-    painter_.emplace(std::filesystem::path(), scene, world, source.rig(), kPictureWidth,
-                     options.layers);
+    painter_.emplace(scene, world, source.rig(), kPictureWidth, options.layers);
   }
   serve::LivePageOptions page;
   page.port = *options.serve_port;
@@ -96,7 +77,7 @@ std::map<std::string, serve::LivePage::Control> LiveView::Controls() const {
 }
 
 void LiveView::Show(const FrameInWork& frame) {
-  std::shared_ptr<const FrameInWork> copy = CopyOf(frame);
+  std::shared_ptr<const FrameInWork> copy = CopyForViewers(frame);
   const Clock::time_point now = Clock::now();
   const std::lock_guard<std::mutex> lock(mutex_);
   newest_ = std::move(copy);
@@ -145,11 +126,7 @@ void LiveView::Publish() {
   state->documents["history"] = LiveHistoryJson(points);
   if (frame) {
     state->documents["view"] = report::LiveView(body_.ViewOf(*frame));
-    if (painter_) {
-      // The run may have drawn it already.
-      state->pictures.push_back(
-          Jpeg(frame->overlay.empty() ? painter_->Draw(*frame) : frame->overlay));
-    }
+    if (painter_) state->pictures.push_back(Jpeg(painter_->Draw(*frame)));
   }
   broadcast_.Publish(std::move(state));
 }

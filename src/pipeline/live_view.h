@@ -12,8 +12,8 @@
 #include "pipeline/body_views.h"
 #include "pipeline/live_state.h"
 #include "pipeline/marker_source.h"
-#include "pipeline/overlay_video.h"
 #include "pipeline/stage_clock.h"
+#include "pipeline/viewer_painter.h"
 #include "softforce/serve/broadcast.h"
 #include "softforce/serve/live_page.h"
 
@@ -53,7 +53,7 @@ class LiveView {
   const StageClock& clock_;
   const std::string token_, run_;
   const BodyViews body_;
-  std::optional<OverlayVideo> painter_;  // nothing: there are no pictures
+  std::optional<ViewerPainter> painter_;  // nothing: there are no pictures
 
   std::mutex mutex_;
   std::condition_variable ended_here_;

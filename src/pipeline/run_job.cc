@@ -62,6 +62,7 @@ std::vector<Stage> RunJob::Stages(RunOutputs* outputs, base::Progress* progress)
   stages.push_back({"report", Order::kInOrder, [this, progress](FrameInWork* frame) {
                       tally_.Add(frame->result);
                       if (live_view_) live_view_->Show(*frame);
+                      if (live_window_) live_window_->Show(*frame);
                       if (progress != nullptr) progress->Update(tally_.report.frames, Note());
                     }});
   return stages;
@@ -135,6 +136,7 @@ RunReport RunJob::Finish() {
     live_view_.emplace(options_, scene_, world_, *source_, clock_);
     TellAddress(*live_view_);
   }
+  if (options_.view) live_window_.emplace(options_, scene_, world_, *source_);
   PrepareFolder(options_.out);
   LogSetUp();
   const CandidateCount count = CountCandidates(world_);
@@ -144,6 +146,7 @@ RunReport RunJob::Finish() {
   RunOutputs outputs(options_, scene_, world_, source_->rig());
 
   ProcessFrames(&outputs);
+  live_window_.reset();
   source_->Finish();
 
   RunReport& report = tally_.report;

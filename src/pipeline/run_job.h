@@ -6,6 +6,7 @@
 
 #include "pipeline/frame_pipeline.h"
 #include "pipeline/live_view.h"
+#include "pipeline/live_window.h"
 #include "pipeline/marker_source.h"
 #include "pipeline/mesh_correction.h"
 #include "pipeline/run_outputs.h"
@@ -44,7 +45,9 @@ class RunJob {
 
   StageClock clock_;
   RunTally tally_;
-  std::optional<LiveView> live_view_;  // last: its thread looks at the others
+  // Last: their threads look at the others.
+  std::optional<LiveView> live_view_;
+  std::optional<LiveWindow> live_window_;
 };
 
 }  // namespace softforce::pipeline

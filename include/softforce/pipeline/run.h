@@ -47,6 +47,7 @@ struct RunOptions {
   // Set from outside: end after the frames in work, with complete files.
   const std::atomic<bool>* stop = nullptr;
   std::optional<int> serve_port;  // of the live page, on this machine; 0: any; nothing: no page
+  bool view = false;              // show the run in a window; needs a display
   // What viewers ask for while it runs; nullptr: nobody does.
   RunControls* controls = nullptr;
 
