@@ -10,11 +10,12 @@
 namespace softforce::estimation {
 namespace {
 
-constexpr int kMaxChanges = 12;        // of the number of forces in one search
-constexpr size_t kTriedStarts = 3;     // candidates from which a new force is tried
-constexpr double kImprobable = 1e-3;   // a residual that large comes by chance this often
-constexpr double kNeighbours = 1.5;    // candidate spacings
-constexpr double kWorthSaying = 1e-2;  // odds
+constexpr int kMaxChanges = 12;          // of the number of forces in one search
+constexpr size_t kTriedStarts = 3;       // candidates from which a new force is tried
+constexpr double kImprobable = 1e-3;     // a residual that large comes by chance this often
+constexpr double kNeighbours = 1.5;      // candidate spacings
+constexpr double kBeyondTheEdge = 0.15;  // diagonals: one further off moves other markers
+constexpr double kWorthSaying = 1e-2;    // odds
 
 // Of an answer that costs `cost` to one that costs `least`: by χ² and prices.
 double Odds(double cost, double least) { return std::exp((least - cost) / 2); }
@@ -165,12 +166,15 @@ bool LocationEstimator::State::ChangeFace(const LinearisedPoints& points,
   double least = before;
   std::vector<TrialForce> best;
   for (size_t j = 0; j < trials->size(); ++j) {
-    // The candidate nearest to it on each other face.
+    // The candidate nearest to it on each other face, if it is not far.
     const Eigen::Vector3d place = faces.walk().Position((*trials)[j].at);
     std::map<int, int> nearest;  // by face
     for (int c = 0; c < static_cast<int>(candidates.size()); ++c) {
       const int face = FaceOf(candidates[c].at);
-      if (face == FaceOf((*trials)[j].at)) continue;
+      if (face == FaceOf((*trials)[j].at) ||
+          (candidate_places[c] - place).norm() > kBeyondTheEdge * diagonal) {
+        continue;
+      }
       const auto at = nearest.emplace(face, c).first;
       if ((candidate_places[c] - place).norm() < (candidate_places[at->second] - place).norm()) {
         at->second = c;

@@ -1,7 +1,6 @@
 #include "estimation/subset_search.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -135,14 +134,18 @@ double SubsetSearch::MinusTwiceLogEvidence(const Subset& fit,
   if (fit.groups.empty()) return bb_;
   const std::vector<int> index = Unknowns(fit.groups);
   const Eigen::MatrixXd G = G_(index, index);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(G);
-  const Eigen::ArrayXd along = (axes.eigenvectors().transpose() * g_(index)).array().square();
-  const Eigen::ArrayXd stiffness = axes.eigenvalues().array().max(0);
+  const Eigen::VectorXd g = g_(index);
   Eigen::ArrayXd cost(static_cast<Eigen::Index>(scales.size()));
+  Eigen::LLT<Eigen::MatrixXd> factor(G.rows());
+  Eigen::MatrixXd with_prior = G;
   for (size_t j = 0; j < scales.size(); ++j) {
-    const double variance = scales[j] * scales[j];
+    const double information = 1 / (scales[j] * scales[j]);
+    with_prior.diagonal() = G.diagonal().array() + information;
+    factor.compute(with_prior);
+    const double determinant = factor.matrixLLT().diagonal().array().square().log().sum() -
+                               static_cast<double>(G.rows()) * std::log(information);
     cost(static_cast<Eigen::Index>(j)) =
-        bb_ - (along / (stiffness + 1 / variance)).sum() + (1 + variance * stiffness).log().sum();
+        bb_ - factor.matrixL().solve(g).squaredNorm() + determinant;
   }
   const double least = cost.minCoeff();
   double total = least - 2 * std::log(((least - cost) / 2).exp().mean());
