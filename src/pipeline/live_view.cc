@@ -16,7 +16,8 @@ constexpr std::chrono::milliseconds kShortestPeriod{67};   // between states
 constexpr std::chrono::milliseconds kPeriodPerReader{25};  // but no less for each who looks
 constexpr std::chrono::milliseconds kLongestPeriod{500};   // and where no frame comes
 constexpr std::chrono::milliseconds kIdle{20};             // after which it is seen who looks
-constexpr std::chrono::milliseconds kFarewell{1000};
+constexpr std::chrono::milliseconds kFarewell{1000};       // for readers to take the last state
+constexpr std::chrono::seconds kLastState{10};             // for it to be made, at the longest
 constexpr std::chrono::seconds kRateSpan{2};
 constexpr size_t kStageTimes = 200;  // that percentiles are taken of
 constexpr int kPictureWidth = 1280;  // px
@@ -157,6 +158,11 @@ void LiveView::Work() {
     }
     const Clock::time_point start = Clock::now();
     Publish();
+    if (next.second) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      end_shown_ = true;
+      end_shown_here_.notify_all();
+    }
     shown = next;
     last = start;
     const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
@@ -172,7 +178,13 @@ void LiveView::End(const RunReport& report) {
     usable_ = report.usable;
   }
   ended_here_.notify_all();
-  if (broadcast_.readers() > 0) std::this_thread::sleep_for(kFarewell);
+  if (broadcast_.readers() == 0) return;
+  {
+    // Where no core is idle a thread of the lowest priority takes its time.
+    std::unique_lock<std::mutex> lock(mutex_);
+    end_shown_here_.wait_for(lock, kLastState, [this] { return end_shown_; });
+  }
+  std::this_thread::sleep_for(kFarewell);
 }
 
 }  // namespace softforce::pipeline

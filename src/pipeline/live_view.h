@@ -56,14 +56,14 @@ class LiveView {
   std::optional<ViewerPainter> painter_;  // nothing: there are no pictures
 
   std::mutex mutex_;
-  std::condition_variable ended_here_;
+  std::condition_variable ended_here_, end_shown_here_;
   std::shared_ptr<const FrameInWork> newest_;
   LiveHistory history_;
   std::deque<Clock::time_point> arrivals_;  // of the last frames
   int processed_ = 0;
   double latency_ms_ = 0;
   std::string ended_;
-  bool usable_ = false, closing_ = false;
+  bool usable_ = false, closing_ = false, end_shown_ = false;
 
   serve::Broadcast broadcast_;
   std::optional<serve::LivePage> page_;
