@@ -279,7 +279,7 @@ void LocationEstimator::State::FindAlternatives(const Round& round,
       if (!Contains(odds.best.groups, c) && instead[c] >= kDoubt) force.alternatives.push_back(c);
     }
   }
-  estimate->probability = odds.probability();
+  estimate->probability = odds.least_certain(static_cast<int>(candidates.size()));
 }
 
 void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate) {

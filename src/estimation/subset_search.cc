@@ -63,6 +63,21 @@ std::vector<std::vector<int>> Neighbours(const std::vector<int>& groups, int n, 
 
 }  // namespace
 
+double SubsetOdds::least_certain(int num_groups) const {
+  std::vector<double> right(static_cast<size_t>(num_groups), 0);
+  const auto has = [](const std::vector<int>& groups, int group) {
+    return std::find(groups.begin(), groups.end(), group) != groups.end();
+  };
+  for (const WeighedSubset& subset : likely) {
+    for (int g = 0; g < num_groups; ++g) {
+      if (has(subset.groups, g) == has(best.groups, g)) {
+        right[static_cast<size_t>(g)] += subset.probability;
+      }
+    }
+  }
+  return right.empty() ? 1 : *std::min_element(right.begin(), right.end());
+}
+
 SubsetSearch::SubsetSearch(const GroupedProblem& problem)
     : first_{0}, push_(problem.push), bb_(problem.b.squaredNorm()) {
   for (const Eigen::MatrixXd& A : problem.A) {

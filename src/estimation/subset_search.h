@@ -28,7 +28,8 @@ struct SubsetOdds {
   Subset best;
   std::vector<WeighedSubset> likely;  // likeliest first, down to a millionth
 
-  double probability() const { return likely.empty() ? 0 : likely.front().probability; }
+  // Of that group of which it is least certain, that it is rightly in the best subset or out of it.
+  double least_certain(int num_groups) const;
 };
 
 // Normal equations of all groups, from which those of any subset are taken.

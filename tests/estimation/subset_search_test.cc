@@ -65,8 +65,8 @@ TEST_F(TwoOfMany, ProbabilitiesAreKept) {
         SubsetSearch(Make(8, acting, [&] { return unknown(random_); })).Weigh(3);
     const bool is_right = odds.best.groups == acting;
     right += is_right / double{kDraws};
-    said += odds.probability() / kDraws;
-    if (odds.probability() < 0.99) continue;
+    said += odds.likely.front().probability / kDraws;
+    if (odds.least_certain(8) < 0.99) continue;
     ++sure;
     sure_and_right += is_right;
   }

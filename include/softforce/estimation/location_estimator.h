@@ -73,9 +73,9 @@ struct LocationEstimate {
   ForceEstimate::Status status = ForceEstimate::Status::kNotRun;
   std::string reason;  // for a person; empty if ok
   std::vector<LocatedForce> forces;
-  // That the forces are as many as found, and on these faces; by kCandidates, that the right
-  // candidates were found. The model's errors are part of what is weighed, as the observations'
-  // noise is. NaN by kThreshold.
+  // That the forces are as many as found, and on these faces; by kCandidates, of the candidate of
+  // which it is least certain that it is rightly held to be loaded or not. The model's errors are
+  // part of what is weighed, as the observations' noise is. NaN by kThreshold.
   double probability = NAN;
   double chi2 = NAN;  // of the observations used
   int degrees_of_freedom = 0;
