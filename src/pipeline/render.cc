@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -91,6 +92,9 @@ std::vector<std::string> Changes(const Json& summary, const std::vector<fs::path
   }
   return changes;
 }
+
+// Of all threads of the program, so far.
+double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 fs::path OutFor(const fs::path& results, const RenderOptions& options) {
   const fs::path out = options.out.empty() ? results / "overlay.mp4" : options.out;
@@ -185,6 +189,7 @@ RenderReport Render(const fs::path& results, const RenderOptions& options) {
   const int threads = options.threads > 0 ? options.threads : DefaultThreads();
   StageClock clock;
   const auto start = std::chrono::steady_clock::now();
+  const double start_cpu = CpuSeconds();
   RunStages({"decode", [&](FrameInWork* frame) { return input.Next(frame); }}, stages, threads,
             kFramesPerThread * threads, &clock);
   if (options.show_progress) progress.Finish();
@@ -194,13 +199,14 @@ RenderReport Render(const fs::path& results, const RenderOptions& options) {
   }
   overlay.Commit();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.cpu_seconds = CpuSeconds() - start_cpu;
   report.stages = clock.Report();
   return report;
 }
 
 std::string RenderReport::BriefReport() const {
-  return fmt::format("{}: {} frames in {:.1f} s, {:.0f} frames/s", out.string(), frames, seconds,
-                     frames / seconds);
+  return fmt::format("{}: {} frames in {:.1f} s, {:.0f} frames/s, {:.0f} ms of processor time each",
+                     out.string(), frames, seconds, frames / seconds, 1e3 * cpu_seconds / frames);
 }
 
 std::string RenderReport::FullReport() const {

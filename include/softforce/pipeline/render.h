@@ -28,6 +28,7 @@ struct RenderReport {
   std::filesystem::path out;
   int frames = 0;
   double seconds = 0;                 // for the frames, without reading the scene
+  double cpu_seconds = 0;             // of all threads in that time
   std::vector<std::string> warnings;  // inputs that are not those of the run any more
   std::vector<StageTimes> stages;
 
