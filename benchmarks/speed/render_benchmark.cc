@@ -144,14 +144,8 @@ BENCHMARK_CAPTURE(OverlayOf, robot, kRobot, "all")
 BENCHMARK_CAPTURE(OverlayOf, sheet_of_nothing, kSheet, "none")
     ->Arg(kFullWidth)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Render, sheet, kSheet)
-    ->Arg(kFullWidth)
-    ->Arg(1920)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Render, robot, kRobot)
-    ->Arg(kFullWidth)
-    ->Arg(1920)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Render, sheet, kSheet)->Arg(kFullWidth)->Arg(1920)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Render, robot, kRobot)->Arg(kFullWidth)->Arg(1920)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace softforce

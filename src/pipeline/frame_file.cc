@@ -13,7 +13,7 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "frames.bin is little-e
 namespace softforce::pipeline {
 namespace {
 
-constexpr char kTitle[] = "softforce frames 1\n";
+constexpr char kTitle[] = "softforce frames 2\n";
 constexpr double kSteps = 32767;        // of a displacement, to either side
 constexpr int32_t kMostItems = 100000;  // forces or markers of one frame
 
@@ -44,21 +44,37 @@ void GetMatrix(std::istream* in, Matrix* m) {
            static_cast<std::streamsize>(sizeof(*m->data())) * m->size());
 }
 
+base::InputError Spoilt(const std::filesystem::path& path, const std::string& what) {
+  return {path.string(), what, "Make it again with: softforce run"};
+}
+
+int32_t GetCount(const std::filesystem::path& path, std::istream* in) {
+  const auto count = Get<int32_t>(in);
+  if (!*in || count < 0 || count > kMostItems) {
+    throw Spoilt(path, "is cut off, or no file of frames: a count in it cannot be");
+  }
+  return count;
+}
+
 void PutForce(std::ostream* out, const ForceResult& force) {
   Put<int32_t>(out, force.identity);
   Put<int32_t>(out, force.candidate);
   for (const auto* vector : {&force.position, &force.rest, &force.force}) PutMatrix(out, *vector);
   PutMatrix(out, force.covariance);
   PutMatrix(out, force.place_covariance);
+  Put(out, static_cast<int32_t>(force.alternatives.size()));
+  for (const int candidate : force.alternatives) Put<int32_t>(out, candidate);
 }
 
-ForceResult GetForce(std::istream* in) {
+ForceResult GetForce(const std::filesystem::path& path, std::istream* in) {
   ForceResult force;
   force.identity = Get<int32_t>(in);
   force.candidate = Get<int32_t>(in);
   for (auto* vector : {&force.position, &force.rest, &force.force}) GetMatrix(in, vector);
   GetMatrix(in, &force.covariance);
   GetMatrix(in, &force.place_covariance);
+  const int32_t alternatives = GetCount(path, in);
+  for (int32_t a = 0; a < alternatives; ++a) force.alternatives.push_back(Get<int32_t>(in));
   return force;
 }
 
@@ -82,26 +98,29 @@ MarkerResult GetMarker(std::istream* in) {
   return marker;
 }
 
+// m, the least power of two by which the largest component takes no more than kSteps. It is the
+// same for the shape that is given back.
+double StepFor(const Eigen::Matrix3Xd& u) {
+  const double largest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0;
+  return largest > 0 ? std::exp2(std::ceil(std::log2(largest / kSteps))) : 1;
+}
+
+Shape InSteps(const Eigen::Matrix3Xd& u, double step) {
+  return (u / step).array().round().cast<int16_t>();
+}
+
 void PutShape(std::ostream* out, const Eigen::Matrix3Xd& u) {
-  const double largest = u.cwiseAbs().maxCoeff();
-  const double step = largest > 0 ? largest / kSteps : 1;  // m
+  const double step = StepFor(u);
   Put(out, step);
-  PutMatrix(out, Shape((u / step).array().round().cast<int16_t>()));
-}
-
-base::InputError Spoilt(const std::filesystem::path& path, const std::string& what) {
-  return {path.string(), what, "Make it again with: softforce run"};
-}
-
-int32_t GetCount(const std::filesystem::path& path, std::istream* in) {
-  const auto count = Get<int32_t>(in);
-  if (!*in || count < 0 || count > kMostItems) {
-    throw Spoilt(path, "is cut off, or no file of frames: a count in it cannot be");
-  }
-  return count;
+  PutMatrix(out, InSteps(u, step));
 }
 
 }  // namespace
+
+Eigen::Matrix3Xd AsKept(const Eigen::Matrix3Xd& u) {
+  const double step = StepFor(u);
+  return step * InSteps(u, step).cast<double>();
+}
 
 FrameFileWriter::FrameFileWriter(const std::filesystem::path& path, int num_nodes)
     : file_(path), stream_(file_.temporary(), std::ios::binary) {
@@ -119,6 +138,7 @@ void FrameFileWriter::Add(const FrameInWork& frame) {
   Put<int32_t>(&stream_, result.frame);
   Put(&stream_, result.time_s);
   Put<int32_t>(&stream_, static_cast<int32_t>(result.status));
+  Put(&stream_, result.probability);
   PutMatrix(&stream_, frame.T_rig_robot.matrix());
   Put(&stream_, frame.largest_displacement);
   Put(&stream_, static_cast<int32_t>(result.forces.size()));
@@ -162,10 +182,12 @@ std::optional<FrameInWork> FrameFileReader::Next() {
   result.frame = Get<int32_t>(&stream_);
   result.time_s = Get<double>(&stream_);
   result.status = static_cast<estimation::ForceEstimate::Status>(Get<int32_t>(&stream_));
+  result.probability = Get<double>(&stream_);
   GetMatrix(&stream_, &frame.T_rig_robot.matrix());
   frame.largest_displacement = Get<double>(&stream_);
   const int32_t forces = GetCount(path_, &stream_);
-  for (int32_t f = 0; f < forces && stream_; ++f) result.forces.push_back(GetForce(&stream_));
+  for (int32_t f = 0; f < forces && stream_; ++f)
+    result.forces.push_back(GetForce(path_, &stream_));
   const int32_t markers = GetCount(path_, &stream_);
   for (int32_t m = 0; m < markers && stream_; ++m) result.markers.push_back(GetMarker(&stream_));
   const auto step = Get<double>(&stream_);

@@ -12,12 +12,16 @@ namespace softforce::pipeline {
 inline constexpr char kFrameFile[] = "frames.bin";
 
 // frames.bin: what the overlay shows of every frame, pictures apart. The displacements of the nodes
-// are kept as 16-bit numbers, in steps of 1/32767 of the frame's largest component: 30 mm are then
-// told within 0.5 µm, which no picture shows. All else is kept as it is. To have the shapes is what
-// lets `render` go at the speed of the pictures, and without the mechanics: a mesh that was
-// corrected in the run need not be solved for again, and the bytes drawn are those of the run.
+// are kept as 16-bit numbers, in steps of a power of two that suits the frame's largest component:
+// 30 mm are then told within 0.5 µm, and never less than to 1/32767, which no picture shows. All
+// else is kept as it is. To have the shapes is what lets `render` go at the speed of the pictures,
+// and without the mechanics: a mesh that was corrected in the run need not be solved for again. The
+// run draws what is kept, so the bytes that `render` draws are those of the run.
 //
-//   "softforce frames 1\n", int32 nodes; then per frame one record, little-endian throughout.
+//   "softforce frames 2\n", int32 nodes; then per frame one record, little-endian throughout.
+// Displacements (m) as the file gives them back: of these it keeps every bit.
+Eigen::Matrix3Xd AsKept(const Eigen::Matrix3Xd& u);
+
 class FrameFileWriter {
  public:
   // Throws InputError if the file cannot be written.

@@ -18,10 +18,9 @@ constexpr std::chrono::milliseconds kLongestPeriod{500};   // and where no frame
 constexpr std::chrono::milliseconds kIdle{20};             // after which it is seen who looks
 constexpr std::chrono::milliseconds kFarewell{1000};       // for readers to take the last state
 constexpr std::chrono::seconds kLastState{10};             // for it to be made, at the longest
-constexpr std::chrono::seconds kRateSpan{2};
-constexpr size_t kStageTimes = 200;  // that percentiles are taken of
-constexpr int kPictureWidth = 1280;  // px
-constexpr int kJpegQuality = 75;     // %
+constexpr size_t kStageTimes = 200;                        // that percentiles are taken of
+constexpr int kPictureWidth = 1280;                        // px
+constexpr int kJpegQuality = 75;                           // %
 
 std::string Jpeg(const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
@@ -79,14 +78,14 @@ std::map<std::string, serve::LivePage::Control> LiveView::Controls() const {
 
 void LiveView::Show(const FrameInWork& frame) {
   std::shared_ptr<const FrameInWork> copy = CopyForViewers(frame);
+  if (painter_) painter_->Note(frame.result);
   const Clock::time_point now = Clock::now();
   const std::lock_guard<std::mutex> lock(mutex_);
   newest_ = std::move(copy);
   history_.Add(frame.result);
   ++processed_;
   latency_ms_ = std::chrono::duration<double, std::milli>(now - frame.taken_up).count();
-  arrivals_.push_back(now);
-  while (now - arrivals_.front() > kRateSpan) arrivals_.pop_front();
+  rate_.Add(now);
 }
 
 LiveFacts LiveView::Facts() {
@@ -100,13 +99,7 @@ LiveFacts LiveView::Facts() {
   facts.ended = ended_;
   facts.usable = usable_;
   facts.pictures = painter_ ? 1 : 0;
-  // Of a run that stands still it falls to 0.
-  const Clock::time_point now = Clock::now();
-  while (!arrivals_.empty() && now - arrivals_.front() > kRateSpan) arrivals_.pop_front();
-  if (arrivals_.size() > 1) {
-    const double span_s = std::chrono::duration<double>(now - arrivals_.front()).count();
-    facts.rate = static_cast<double>(arrivals_.size()) / std::max(span_s, 1e-3);
-  }
+  facts.rate = rate_.PerSecond(Clock::now());
   return facts;
 }
 

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -59,7 +58,7 @@ class LiveView {
   std::condition_variable ended_here_, end_shown_here_;
   std::shared_ptr<const FrameInWork> newest_;
   LiveHistory history_;
-  std::deque<Clock::time_point> arrivals_;  // of the last frames
+  FrameRate rate_;
   int processed_ = 0;
   double latency_ms_ = 0;
   std::string ended_;

@@ -16,7 +16,6 @@ namespace {
 constexpr int kWidth = 1280;     // px, at most
 constexpr int kKeyWait_ms = 30;  // between looks for keys and new frames
 constexpr int kEscape = 27;
-constexpr std::chrono::seconds kRateSpan{2};
 constexpr int kLine = 24;  // px
 constexpr double kFontScale = 0.5;
 const cv::Scalar kInk(235, 235, 235), kPaper(40, 40, 40);
@@ -60,18 +59,16 @@ LiveWindow::~LiveWindow() {
 }
 
 void LiveWindow::Show(const FrameInWork& frame) {
+  painter_.Note(frame.result);
   std::shared_ptr<const FrameInWork> copy = CopyForViewers(frame);
   const std::lock_guard<std::mutex> lock(mutex_);
   newest_ = std::move(copy);
-  arrivals_.push_back(Clock::now());
+  rate_.Add(FrameRate::Clock::now());
 }
 
 double LiveWindow::Rate() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const Clock::time_point since = Clock::now() - kRateSpan;
-  double recent = 0;
-  for (const Clock::time_point arrival : arrivals_) recent += arrival > since;
-  return recent / static_cast<double>(kRateSpan.count());
+  return rate_.PerSecond(FrameRate::Clock::now());
 }
 
 std::string LiveWindow::Note(int frame) const {
@@ -124,9 +121,6 @@ void LiveWindow::Work() {
       const std::lock_guard<std::mutex> lock(mutex_);
       if (closing_) break;
       newest = newest_;
-      while (!arrivals_.empty() && Clock::now() - arrivals_.front() > kRateSpan) {
-        arrivals_.pop_front();
-      }
     }
     if (newest && newest != drawn) picture = painter_.Draw(*newest);
     drawn = newest;

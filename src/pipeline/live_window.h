@@ -1,7 +1,5 @@
 #pragma once
 
-#include <chrono>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -26,8 +24,6 @@ class LiveWindow {
   void Show(const FrameInWork& frame);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   void Work();
   void Press(int key, const cv::Mat& shown);
   cv::Mat Page(const cv::Mat& picture, int frame) const;
@@ -40,7 +36,7 @@ class LiveWindow {
 
   mutable std::mutex mutex_;
   std::shared_ptr<const FrameInWork> newest_;
-  std::deque<Clock::time_point> arrivals_;  // of the last frames
+  FrameRate rate_;
   bool closing_ = false;
 
   int screenshots_ = 0;  // of the window's thread, as what follows

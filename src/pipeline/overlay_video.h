@@ -1,13 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
+#include "pipeline/force_history.h"
 #include "pipeline/frame_pipeline.h"
 #include "softforce/pipeline/overlay_layers.h"
 #include "softforce/pipeline/world.h"
-#include "softforce/render/force_chart.h"
+#include "softforce/render/easel.h"
 #include "softforce/vision/video_writer.h"
 
 namespace softforce::pipeline {
@@ -24,15 +27,21 @@ class OverlayVideo {
   bool wants_stress() const { return layers_.stress; }
   void AddStress(FrameInWork* frame);
 
-  // The pictures. May be called from several threads.
-  cv::Mat Draw(const FrameInWork& frame) const;
+  // The pictures, and below them room for the forces over time. `note` is one more line of the
+  // caption. What is drawn is what frames.bin keeps of a frame, no more. May be called from several
+  // threads.
+  cv::Mat Draw(const FrameInWork& frame, const std::string& note = "") const;
 
-  // Adds a frame with its pictures as drawn; one after the other.
-  void Add(const FrameResult& result, const cv::Mat& drawn);
+  // Fills that room of the pictures drawn of a frame, if there is one.
+  void DrawHistory(const FrameInWork& frame, const ForceHistory& history, cv::Mat drawn) const;
+
+  // Adds a frame whose pictures have been drawn, with the forces up to it below them; one after the
+  // other.
+  void Add(const FrameInWork& frame);
   void Commit() { writer_->Commit(); }
 
  private:
-  void Remember(const FrameResult& result);
+  class Borrowed;
 
   const scene::Scene& scene_;
   const World& world_;
@@ -40,9 +49,10 @@ class OverlayVideo {
   int width_;
   OverlayLayers layers_;
   std::optional<vision::VideoWriter> writer_;
-  std::vector<render::ChartSeries> history_;  // of the time that the chart shows
-  double first_s_ = NAN;
+  ForceHistory history_;
   double largest_stress_ = 0;  // Pa, so far
+  mutable std::mutex mutex_;
+  mutable std::vector<render::Easel> easels_;  // that nobody draws on; as many as threads drew
 };
 
 }  // namespace softforce::pipeline

@@ -178,7 +178,7 @@ RenderReport Render(const fs::path& results, const RenderOptions& options) {
   std::vector<Stage> stages{
       {"draw", Order::kAny, [&](FrameInWork* frame) { frame->overlay = overlay.Draw(*frame); }},
       {"overlay", Order::kInOrder, [&](FrameInWork* frame) {
-         overlay.Add(frame->result, frame->overlay);
+         overlay.Add(*frame);
          ++report.frames;
          if (options.show_progress) progress.Update(report.frames);
        }}};

@@ -43,9 +43,8 @@ std::vector<Stage> RunOutputs::Stages() {
   if (overlay_) {
     stages.push_back({"draw", Order::kAny,
                       [this](FrameInWork* frame) { frame->overlay = overlay_->Draw(*frame); }});
-    stages.push_back({"overlay", Order::kInOrder, [this](FrameInWork* frame) {
-                        overlay_->Add(frame->result, frame->overlay);
-                      }});
+    stages.push_back(
+        {"overlay", Order::kInOrder, [this](FrameInWork* frame) { overlay_->Add(*frame); }});
   }
   if (series_) {
     stages.push_back({"vtu", Order::kInOrder,

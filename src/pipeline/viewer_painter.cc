@@ -1,5 +1,7 @@
 #include "pipeline/viewer_painter.h"
 
+#include <fmt/format.h>
+
 #include <opencv2/imgproc.hpp>
 
 namespace softforce::pipeline {
@@ -19,17 +21,31 @@ ViewerPainter::ViewerPainter(const scene::Scene& scene, const World& world, cons
                              int width, const OverlayLayers& layers)
     : width_(width), overlay_(std::filesystem::path(), scene, world, rig, width, layers) {}
 
+void ViewerPainter::Note(const FrameResult& result) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  history_.Add(result);
+  rate_.Add(FrameRate::Clock::now());
+}
+
 cv::Mat ViewerPainter::Draw(const FrameInWork& frame) {
-  cv::Mat picture = frame.overlay;
-  if (picture.empty()) {
+  if (frame.overlay.empty()) {
+    ForceHistory history;
+    double rate = 0;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      history = history_;
+      rate = rate_.PerSecond(FrameRate::Clock::now());
+    }
     FrameInWork with_stress = frame;
     if (overlay_.wants_stress()) overlay_.AddStress(&with_stress);
-    picture = overlay_.Draw(with_stress);
+    cv::Mat drawn = overlay_.Draw(with_stress, fmt::format("{:.0f} frames/s", rate));
+    overlay_.DrawHistory(frame, history, drawn);
+    return drawn;
   }
-  if (picture.cols <= width_) return picture;
+  if (frame.overlay.cols <= width_) return frame.overlay;
   cv::Mat small;
-  const double factor = static_cast<double>(width_) / picture.cols;
-  cv::resize(picture, small, {}, factor, factor, cv::INTER_AREA);
+  const double factor = static_cast<double>(width_) / frame.overlay.cols;
+  cv::resize(frame.overlay, small, {}, factor, factor, cv::INTER_AREA);
   return small;
 }
 

@@ -1,32 +1,17 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "render/body_picture.h"
 #include "render/brush.h"
-#include "render/depth_buffer.h"
-#include "render/view.h"
-#include "softforce/mesh/surface.h"
+#include "render/surface_edges.h"
 
 namespace softforce::render {
-
-// The body as one camera sees it.
-struct BodyPicture {
-  std::vector<Sight> nodes;        // as many as columns of x; set for nodes of the surface
-  std::vector<bool> faces_camera;  // of each triangle
-  DepthBuffer depth;               // its triangles are pieces, see NodesOfPiece
-};
-
-// The flat pieces of the surface's triangles: one of 3 nodes, four of 6.
-int NumPieces(const mesh::Surface& surface);
-std::array<int, 3> NodesOfPiece(const mesh::Surface& surface, int piece);
-
-BodyPicture PictureBody(const View& view, const mesh::Surface& surface, const Eigen::Matrix3Xd& x);
 
 // The edges of the visible faces: thin and translucent, `opacity` of 1, stronger along the outline
 // and sharp ridges.
 void DrawNet(Brush* brush, const View& view, const mesh::Surface& surface,
-             const Eigen::Matrix3Xd& x, const BodyPicture& body, const cv::Vec3b& colour,
-             double opacity);
+             const Eigen::Matrix3Xd& x, const BodyPicture& body, const std::vector<Edge>& edges,
+             const cv::Vec3b& colour, double opacity);
 
 }  // namespace softforce::render

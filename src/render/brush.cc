@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
+
+#include "render/easel_state.h"
 
 namespace softforce::render {
 namespace {
@@ -11,10 +15,10 @@ constexpr int kFractionBits = 4;  // OpenCV draws with fixed-point coordinates
 
 cv::Point Fixed(const cv::Point2d& p) {
   constexpr double kOne = 1 << kFractionBits;
-  return {static_cast<int>(std::lround(p.x * kOne)), static_cast<int>(std::lround(p.y * kOne))};
+  return {cvRound(p.x * kOne), cvRound(p.y * kOne)};
 }
 
-int Thickness(double width) { return std::max(1, static_cast<int>(std::lround(width))); }
+int Thickness(double width) { return std::max(1, cvRound(width)); }
 
 cv::Rect BoxAround(const cv::Point2d& a, const cv::Point2d& b, double margin) {
   const int left = static_cast<int>(std::floor(std::min(a.x, b.x) - margin));
@@ -24,10 +28,31 @@ cv::Rect BoxAround(const cv::Point2d& a, const cv::Point2d& b, double margin) {
   return {left, top, right - left + 1, bottom - top + 1};
 }
 
+cv::Mat1b CleanMask(const cv::Size& size, Easel* easel) {
+  cv::Mat1b& mask = easel->state().mask;
+  if (mask.rows < size.height || mask.cols < size.width) {
+    mask = cv::Mat1b::zeros(std::max(mask.rows, size.height), std::max(mask.cols, size.width));
+  }
+  return mask(cv::Rect({}, size));
+}
+
+// How many of the next pixels nothing was drawn on; most of a mask is of this kind.
+int Untouched(const uchar* coverage, int count) {
+  int i = 0;
+  for (uint64_t eight = 0; i + 8 <= count; i += 8) {
+    std::memcpy(&eight, coverage + i, 8);
+    if (eight != 0) break;
+  }
+  while (i < count && coverage[i] == 0) ++i;
+  return i;
+}
+
 }  // namespace
 
-Brush::Brush(cv::Mat3b picture)
-    : picture_(std::move(picture)), mask_(cv::Mat1b::zeros(picture_.size())) {}
+Brush::Brush(cv::Mat3b picture, Easel* easel)
+    : picture_(std::move(picture)),
+      alphabet_(&easel->state().alphabet),
+      mask_(CleanMask(picture_.size(), easel)) {}
 
 void Brush::Touch(const cv::Rect& box) { touched_ |= box & cv::Rect(cv::Point(), picture_.size()); }
 
@@ -66,26 +91,37 @@ void Brush::Arc(const cv::Point2d& centre, double radius, double from, double to
   Polyline(points, width);
 }
 
-void Brush::Text(const std::string& text, const cv::Point& baseline_left, int font, double scale,
-                 int width) {
-  cv::putText(mask_, text, baseline_left, font, scale, 255, width, cv::LINE_AA);
-  int below = 0;
-  const cv::Size size = cv::getTextSize(text, font, scale, width, &below);
-  const cv::Point2d corner(baseline_left.x, baseline_left.y - size.height);
-  Touch(BoxAround(corner, corner + cv::Point2d(size.width, size.height + below), width + 3));
+cv::Point2d Brush::Text(const std::string& text, const cv::Point2d& baseline_left, double scale,
+                        double width) {
+  cv::Point2d pen = baseline_left;
+  for (const char character : text) {
+    const Letter& letter = alphabet_->Draw(character, scale, width, pen.x);
+    const cv::Point corner = cv::Point(cvFloor(pen.x), cvRound(pen.y)) + letter.corner;
+    const cv::Rect whole(corner, letter.coverage.size());
+    const cv::Rect box = whole & cv::Rect({}, picture_.size());
+    if (!box.empty()) {
+      cv::Mat target = mask_(box);
+      cv::max(target, letter.coverage(box - corner), target);
+      Touch(box);
+    }
+    pen.x += scale * Alphabet::Advance(std::string(1, character));
+  }
+  return pen;
 }
 
 void Brush::Paint(const cv::Vec3b& colour, double opacity) {
-  const int strength = static_cast<int>(std::lround(opacity * 256));
+  const auto strength = static_cast<unsigned>(cvRound(opacity * 256));
   for (int y = touched_.y; y < touched_.br().y; ++y) {
     uchar* coverage = mask_[y];
     cv::Vec3b* pixels = picture_[y];
-    for (int x = touched_.x; x < touched_.br().x; ++x) {
-      if (coverage[x] == 0) continue;
-      const int share = coverage[x] * strength / 255;  // of 256
+    const int end = touched_.br().x;
+    for (int x = touched_.x; x < end; ++x) {
+      x += Untouched(coverage + x, end - x);
+      if (x == end) break;
+      const unsigned share = coverage[x] * strength / 255;  // of 256
       for (int i = 0; i < 3; ++i) {
-        pixels[x][i] = cv::saturate_cast<uchar>(
-            (pixels[x][i] * (256 - share) + colour[i] * share + 128) / 256);
+        pixels[x][i] =
+            static_cast<uchar>((pixels[x][i] * (256 - share) + colour[i] * share + 128) / 256);
       }
       coverage[x] = 0;
     }

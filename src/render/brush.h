@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "render/alphabet.h"
 #include "render/palette.h"
+#include "softforce/render/easel.h"
 
 namespace softforce::render {
 
@@ -16,7 +18,8 @@ namespace softforce::render {
 //   brush.Paint(kOrange, 0.8);
 class Brush {
  public:
-  explicit Brush(cv::Mat3b picture);
+  // One brush at a time may use an easel, which must outlive it.
+  Brush(cv::Mat3b picture, Easel* easel);
 
   // All in px; (0, 0) is the centre of the top-left pixel.
   void Line(const cv::Point2d& a, const cv::Point2d& b, double width);
@@ -25,8 +28,10 @@ class Brush {
   void Disc(const cv::Point2d& centre, double radius);
   // Part of a circle; angles in degrees from the x axis towards y, `from` < `to`.
   void Arc(const cv::Point2d& centre, double radius, double from, double to, double width);
-  void Text(const std::string& text, const cv::Point& baseline_left, int font, double scale,
-            int width);
+  // Letters of a size (1: capitals of 21 px) and width of their strokes (px). Returns where the pen
+  // stands after the last one.
+  cv::Point2d Text(const std::string& text, const cv::Point2d& baseline_left, double scale,
+                   double width);
 
   void Paint(const cv::Vec3b& colour, double opacity);
 
@@ -46,7 +51,8 @@ class Brush {
   void Touch(const cv::Rect& box);
 
   cv::Mat3b picture_;  // shares the caller's pixels
-  cv::Mat1b mask_;     // coverage of the collected shapes; 0 outside `touched_`
+  Alphabet* alphabet_;
+  cv::Mat1b mask_;  // coverage of the collected shapes; 0 outside `touched_`
   cv::Rect touched_;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <opencv2/core.hpp>
 
 #include "render/brush.h"
@@ -13,15 +15,27 @@ class ColourScale {
  public:
   ColourScale();
 
+  static constexpr int kColours = 256;
+
   cv::Vec3b At(double share) const;  // 0 to 1; beyond it the colour of the end
 
+  // The same by the number of the colour, 0 to kColours - 1.
+  const cv::Vec3b& Number(float number) const {
+    // In this order NaN ends up at the lower end.
+    const float clamped = std::min(std::max(0.0f, number), kColours - 1.0f);
+    return colours_[static_cast<size_t>(clamped + 0.5f)];
+  }
+
  private:
-  cv::Mat3b colours_;
+  std::array<cv::Vec3b, kColours> colours_;
 };
+
+// px, of the plate that DrawColourBar fills.
+int ColourBarWidth(const SurfaceField& field, const TextStyle& style);
 
 // Name, colours and numbers of a field, on a plate whose top-right corner is `corner`. Returns the
 // plate's box.
 cv::Rect DrawColourBar(Brush* brush, cv::Mat3b picture, const SurfaceField& field,
-                       const cv::Point& corner, const TextStyle& style, double unit);
+                       const cv::Point& corner, const TextStyle& style);
 
 }  // namespace softforce::render

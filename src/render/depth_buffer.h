@@ -10,16 +10,17 @@ namespace softforce::render {
 // in the picture over a flat face.
 class DepthBuffer {
  public:
-  explicit DepthBuffer(cv::Size size)
-      : inverse_depth_(cv::Mat1f::zeros(size)), nearest_(size, kNothing) {}
+  // Before the first triangle of a picture.
+  void Clear(cv::Size size);
 
   // `name` is what Nearest() calls the triangle, ≥ 0.
   void AddTriangle(const Sight& a, const Sight& b, const Sight& c, int name);
 
   static constexpr int kNothing = -1;
 
-  // The name of the nearest triangle at each pixel, or kNothing.
+  // The name of the nearest triangle at each pixel, or kNothing, which it is outside Reach().
   const cv::Mat1i& Nearest() const { return nearest_; }
+  const cv::Rect& Reach() const { return reach_; }
 
   // Whether a surface stands before the point. A point on a surface, or within a pixel of the
   // outline of the surface before it, is not hidden.
@@ -28,6 +29,7 @@ class DepthBuffer {
  private:
   cv::Mat1f inverse_depth_;  // 1/m; 0 where there is no surface
   cv::Mat1i nearest_;
+  cv::Rect reach_;  // all triangles lie within
 };
 
 }  // namespace softforce::render

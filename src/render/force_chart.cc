@@ -14,6 +14,8 @@
 namespace softforce::render {
 namespace {
 
+constexpr double kFullHeight = 150;  // px, of a strip in which letters have size 1
+constexpr double kLeastText = 0.9;
 constexpr double kBand = 1.96;  // standard deviations on either side: 95 %
 const cv::Vec3b kGround(32, 32, 32), kGrid(80, 80, 80), kWords(200, 200, 200);
 const std::array<cv::Vec3b, 6> kColours{kOrange, kSkyBlue, kGreen, kYellow, kPurple, kVermillion};
@@ -102,14 +104,17 @@ double RoundUp(double number) {
   return 10 * power;
 }
 
-cv::Mat DrawForceChart(cv::Size size, const std::vector<ChartSeries>& series, double now_s,
-                       double span_s) {
+void DrawForceChart(cv::Mat3b strip, const std::vector<ChartSeries>& series, double now_s,
+                    double span_s, Easel* easel) {
   assert(span_s > 0);
-  cv::Mat3b picture(size, kGround);
-  Brush brush(picture);
-  const TextStyle style{0.45, 1};
+  strip.setTo(cv::Scalar(kGround));
+  Easel own;
+  Brush brush(strip, easel != nullptr ? easel : &own);
+  const cv::Size size = strip.size();
+  const double unit = std::max(kLeastText, size.height / kFullHeight);
+  const TextStyle style{0.45 * unit, std::max(1.0, unit)};
   const int line = MeasureText("0", style).above;
-  const int left = MeasureText("0.005 N", style).width + 16, right = 200;
+  const int left = MeasureText("0.005 N", style).width + 16, right = cvRound(200 * unit);
   Axes axes{
       {left, 2 * line, std::max(1, size.width - left - right), std::max(1, size.height - 5 * line)},
       now_s - span_s,
@@ -129,7 +134,6 @@ cv::Mat DrawForceChart(cv::Size size, const std::vector<ChartSeries>& series, do
     DrawText(&brush, text, {axes.box.br().x + 16, baseline}, style, colour);
     baseline += 2 * line;
   }
-  return std::move(picture);
 }
 
 }  // namespace softforce::render

@@ -30,19 +30,36 @@ cv::Rect BoxBeside(const Label& label, const cv::Size& size, const cv::Point2d& 
           size};
 }
 
-double Cost(const cv::Rect& box, const std::vector<cv::Rect>& occupied, const cv::Rect& picture) {
-  double covered = 0;  // px²
+// px², more where words cover words.
+double Cost(const cv::Rect& box, const std::vector<cv::Rect>& occupied,
+            const std::vector<cv::Rect>& words, const cv::Rect& picture) {
+  double covered = 0;
   for (const cv::Rect& other : occupied) covered += (box & other).area();
+  for (const cv::Rect& other : words) covered += 4.0 * (box & other).area();
   return covered + 10.0 * (box.area() - (box & picture).area());
 }
 
 }  // namespace
 
-std::vector<cv::Rect> PlaceLabels(const std::vector<Label>& labels, std::vector<cv::Rect> occupied,
-                                  const cv::Size& picture) {
-  // Eight directions, the customary ones for a map's lettering first.
-  static const std::array<cv::Point2d, 8> kDirections{
-      {{0.8, -0.8}, {1, 0}, {0.8, 0.8}, {-0.8, -0.8}, {-1, 0}, {-0.8, 0.8}, {0, -1}, {0, 1}}};
+std::vector<cv::Rect> PlaceLabels(const std::vector<Label>& labels,
+                                  const std::vector<cv::Rect>& occupied, const cv::Size& picture) {
+  // The customary directions for a map's lettering first, then those between them.
+  static const std::array<cv::Point2d, 16> kDirections{{{0.8, -0.8},
+                                                        {1, 0},
+                                                        {0.8, 0.8},
+                                                        {-0.8, -0.8},
+                                                        {-1, 0},
+                                                        {-0.8, 0.8},
+                                                        {0, -1},
+                                                        {0, 1},
+                                                        {1, -0.5},
+                                                        {1, 0.5},
+                                                        {-1, -0.5},
+                                                        {-1, 0.5},
+                                                        {0.4, -1},
+                                                        {0.4, 1},
+                                                        {-0.4, -1},
+                                                        {-0.4, 1}}};
   const cv::Rect whole(cv::Point(), picture);
   std::vector<cv::Rect> boxes;
   for (const Label& label : labels) {
@@ -51,12 +68,12 @@ std::vector<cv::Rect> PlaceLabels(const std::vector<Label>& labels, std::vector<
     const cv::Size size(extent.width + 2 * padding, extent.above + extent.below + 2 * padding);
     cv::Rect best;
     double lowest = std::numeric_limits<double>::infinity();
-    for (const double reach : {1.0, 2.0, 3.5}) {
+    for (const double reach : {1.0, 2.0, 3.5, 5.5}) {
       for (size_t i = 0; i < kDirections.size(); ++i) {
         const cv::Rect box = BoxBeside(label, size, kDirections[i], reach * label.clearance);
         // Preferences weigh like a little coverage, so that they only decide between free places.
         const double turned = 1 - kDirections[i].dot(label.preferred) / cv::norm(kDirections[i]);
-        const double cost = Cost(box, occupied, whole) + 8 * (reach - 1) + 4 * turned +
+        const double cost = Cost(box, occupied, boxes, whole) + 8 * (reach - 1) + 4 * turned +
                             0.1 * static_cast<double>(i);
         if (cost >= lowest) continue;
         lowest = cost;
@@ -64,7 +81,6 @@ std::vector<cv::Rect> PlaceLabels(const std::vector<Label>& labels, std::vector<
       }
     }
     boxes.push_back(best);
-    occupied.push_back(best);
   }
   return boxes;
 }
@@ -85,6 +101,12 @@ cv::Rect TextBlockBox(const std::vector<std::string>& lines, const cv::Point& co
   const int height =
       LineHeight(style) * (static_cast<int>(lines.size()) - 1) + letters.above + letters.below;
   return {corner, cv::Size(width + 2 * padding, height + 2 * padding)};
+}
+
+TextStyle Fitted(const std::vector<std::string>& lines, TextStyle style, int width) {
+  const int wanted = TextBlockBox(lines, {}, style).width;
+  if (wanted > width) style.scale *= std::max(1, width) / static_cast<double>(wanted);
+  return style;
 }
 
 void DrawTextBlock(Brush* brush, const std::vector<std::string>& lines, const cv::Point& corner,

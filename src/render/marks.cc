@@ -76,7 +76,7 @@ std::vector<std::vector<cv::Point2d>> Dashes(const std::vector<cv::Point2d>& poi
   return dashes;
 }
 
-void DrawCable(Brush* brush, const View& view, const std::vector<Stroke>& cable) {
+void DrawStrokes(Brush* brush, const View& view, const std::vector<Stroke>& cable) {
   if (cable.empty()) return;
   brush->PaintSeamed(kWhite, 0.9, 0.75 * view.unit, [&](double extra) {
     for (const Stroke& stroke : cable) {

@@ -12,7 +12,7 @@ double MarkRadius(double unit);  // px
 void DrawMark(Brush* brush, MarkerMark mark, const cv::Point2d& pixel, double unit);
 
 // The cable as a line, dashed where the body hides it, with a knob where it is attached.
-void DrawCable(Brush* brush, const View& view, const std::vector<Stroke>& cable);
+void DrawStrokes(Brush* brush, const View& view, const std::vector<Stroke>& cable);
 
 // The points of a polyline cut into dashes as long as the gaps between them.
 std::vector<std::vector<cv::Point2d>> Dashes(const std::vector<cv::Point2d>& points, double length);

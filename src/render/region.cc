@@ -13,22 +13,22 @@ constexpr double kSmallest = 2;  // px: an outline that small is hidden by what 
 
 }  // namespace
 
-void DrawRegion(Brush* brush, const View& view, const Eigen::Vector3d& place,
-                const Eigen::Matrix3d& covariance, const cv::Vec3b& colour) {
-  if (!place.allFinite() || !covariance.allFinite()) return;
+std::vector<cv::Point2d> DrawRegion(Brush* brush, const View& view, const Eigen::Vector3d& place,
+                                    const Eigen::Matrix3d& covariance, const cv::Vec3b& colour) {
+  if (!place.allFinite() || !covariance.allFinite()) return {};
   const double size = std::sqrt(covariance.trace());
   const Sight centre = See(view, place);
-  if (!(size > 0) || !centre.visible) return;
+  if (!(size > 0) || !centre.visible) return {};
   Eigen::Matrix<double, 2, 3> J;  // px/m
   for (int axis = 0; axis < 3; ++axis) {
     const Sight aside = See(view, place + size * Eigen::Vector3d::Unit(axis));
-    if (!aside.visible) return;
+    if (!aside.visible) return {};
     const cv::Point2d step = (aside.pixel - centre.pixel) / size;
     J.col(axis) << step.x, step.y;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(J * covariance * J.transpose());
   const Eigen::Vector2d radii = (kQuantile * axes.eigenvalues().cwiseMax(0)).cwiseSqrt();
-  if (radii(1) < kSmallest * view.unit) return;
+  if (radii(1) < kSmallest * view.unit) return {};
   std::vector<cv::Point2d> outline;
   for (int i = 0; i <= kCorners; ++i) {
     const double angle = 2 * M_PI * i / kCorners;
@@ -38,6 +38,7 @@ void DrawRegion(Brush* brush, const View& view, const Eigen::Vector3d& place,
   }
   brush->PaintSeamed(colour, 1, 0.75 * view.unit,
                      [&](double extra) { brush->Polyline(outline, 1.5 * view.unit + extra); });
+  return outline;
 }
 
 }  // namespace softforce::render

@@ -1,56 +1,66 @@
+#include "softforce/render/side_by_side.h"
+
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "render/labels.h"
-#include "softforce/render/overlay.h"
 
 namespace softforce::render {
 namespace {
 
 int Even(double length) { return std::max(2, 2 * static_cast<int>(std::floor(length / 2))); }
 
-void DrawName(const cv::Mat3b& picture, const std::string& name) {
-  const double unit = std::max(0.6, picture.rows / 1024.0);
-  const TextStyle style{0.6 * unit, 1};
-  const int margin = static_cast<int>(12 * unit);
-  const int height = TextBlockBox({name}, {}, style).height;
-  Brush brush(picture);
-  DrawTextBlock(&brush, {name}, {margin, picture.rows - margin - height}, style);
-}
-
 }  // namespace
 
-cv::Mat SideBySide(const std::vector<cv::Mat>& pictures, const std::vector<std::string>& names,
-                   int max_width) {
-  assert(pictures.size() == names.size());
+PictureRow SideBySide(const std::vector<cv::Size>& pictures, int max_width) {
   int width = 0;
-  for (const cv::Mat& picture : pictures) width += picture.cols;
+  for (const cv::Size& picture : pictures) width += picture.width;
   const double scale = width > max_width ? static_cast<double>(max_width) / width : 1;
-
-  std::vector<cv::Size> sizes;
-  cv::Size total;
-  for (const cv::Mat& picture : pictures) {
-    sizes.emplace_back(Even(scale * picture.cols), Even(scale * picture.rows));
-    total.width += sizes.back().width;
-    total.height = std::max(total.height, sizes.back().height);
-  }
-  cv::Mat3b row(total, kBlack);
-  int left = 0;
-  for (size_t i = 0; i < pictures.size(); ++i) {
-    cv::Mat3b cell = row(cv::Rect({left, 0}, sizes[i]));
-    cv::Mat scaled;
-    cv::resize(pictures[i], scaled, sizes[i], 0, 0, cv::INTER_AREA);
-    if (scaled.channels() == 1) {
-      cv::cvtColor(scaled, cell, cv::COLOR_GRAY2BGR);
-    } else {
-      scaled.copyTo(cell);
-    }
-    DrawName(cell, names[i]);
-    left += sizes[i].width;
+  PictureRow row;
+  for (const cv::Size& picture : pictures) {
+    const cv::Size size(Even(scale * picture.width), Even(scale * picture.height));
+    row.cells.emplace_back(cv::Point(row.size.width, 0), size);
+    row.size.width += size.width;
+    row.size.height = std::max(row.size.height, size.height);
   }
   return row;
+}
+
+void PutPicture(const cv::Mat& picture, cv::Mat3b cell) {
+  cv::Mat scaled = picture;
+  if (picture.size() != cell.size()) {
+    cv::resize(picture, scaled, cell.size(), 0, 0, cv::INTER_AREA);
+  }
+  if (scaled.channels() == 1) {
+    cv::cvtColor(scaled, cell, cv::COLOR_GRAY2BGR);
+  } else {
+    scaled.copyTo(cell);
+  }
+}
+
+camera::Camera Scaled(const camera::Camera& camera, const cv::Size& from, const cv::Size& to) {
+  if (from == to) return camera;
+  camera::Camera scaled = camera;
+  const double x = static_cast<double>(to.width) / from.width;
+  const double y = static_cast<double>(to.height) / from.height;
+  scaled.width = to.width;
+  scaled.height = to.height;
+  // Corners of pixels stay corners: they lie half a pixel beside the centres that are counted.
+  scaled.lens.cx = x * (camera.lens.cx + 0.5) - 0.5;
+  scaled.lens.cy = y * (camera.lens.cy + 0.5) - 0.5;
+  scaled.lens.fx *= x;
+  scaled.lens.fy *= y;
+  return scaled;
+}
+
+void DrawName(cv::Mat3b cell, const std::string& name, Easel* easel) {
+  const double unit = std::max(0.75, cell.rows / 1024.0);
+  const TextStyle style{0.6 * unit, std::max(1.0, unit)};
+  const int margin = static_cast<int>(12 * unit);
+  const int height = TextBlockBox({name}, {}, style).height;
+  Brush brush(cell, easel);
+  DrawTextBlock(&brush, {name}, {margin, cell.rows - margin - height}, style);
 }
 
 }  // namespace softforce::render

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "render/body_net.h"
+#include "render/body_picture.h"
 #include "softforce/render/overlay.h"
 
 namespace softforce::render {

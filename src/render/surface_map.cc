@@ -11,9 +11,10 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "render/body_net.h"
 #include "render/brush.h"
 #include "render/colour_scale.h"
+#include "render/easel_state.h"
+#include "render/text.h"
 #include "softforce/mesh/surface_walk.h"
 
 namespace softforce::render {
@@ -109,9 +110,9 @@ void PaintBody(cv::Mat3b* picture, const mesh::Surface& surface, const BodyPictu
   }
 }
 
-void PaintMarkers(cv::Mat3b* picture, const View& view, const BodyPicture& body,
-                  const MapRow& row) {
-  Brush brush(*picture);
+void PaintMarkers(cv::Mat3b* picture, const View& view, const BodyPicture& body, const MapRow& row,
+                  Easel* easel) {
+  Brush brush(*picture, easel);
   constexpr double kRadius = 11 * kFiner;  // px
   for (size_t i = 0; i < row.markers.size(); ++i) {
     const Sight sight = See(view, row.markers[i]);
@@ -121,10 +122,10 @@ void PaintMarkers(cv::Mat3b* picture, const View& view, const BodyPicture& body,
     brush.Disc(sight.pixel, kRadius);
     brush.Paint(kPaper, 1);
     const std::string& label = row.labels[i];
-    const double size = 0.45 * kFiner;
-    const cv::Size box = cv::getTextSize(label, kFont, size, kFiner, nullptr);
-    brush.Text(label, cv::Point(sight.pixel) + cv::Point(-box.width / 2, box.height / 2), kFont,
-               size, kFiner);
+    const TextStyle style{0.45 * kFiner, kFiner};
+    const TextExtent extent = MeasureText(label, style);
+    brush.Text(label, sight.pixel + cv::Point2d(-extent.width, extent.above) / 2, style.scale,
+               style.width);
     brush.Paint(kInk, 1);
   }
 }
@@ -135,10 +136,12 @@ cv::Mat3b Panel(const mesh::Surface& surface, const Eigen::Matrix3Xd& x, const M
   const cv::Size size(kFiner * kPanelWidth, kFiner * kPanelHeight);
   camera::Camera zoomed;
   const View view = FillPicture(from, surface, x, size, &zoomed);
-  const BodyPicture body = PictureBody(view, surface, x);
+  Easel easel;
+  BodyPicture& body = easel.state().body;
+  PictureBody(view, surface, x, &body);
   cv::Mat3b large(size, kPaper);
   PaintBody(&large, surface, body, lines, row.values, scale);
-  PaintMarkers(&large, view, body, row);
+  PaintMarkers(&large, view, body, row, &easel);
   cv::Mat3b panel;
   cv::resize(large, panel, {kPanelWidth, kPanelHeight}, 0, 0, cv::INTER_AREA);
   return panel;

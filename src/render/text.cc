@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "render/palette.h"
@@ -10,7 +9,9 @@
 namespace softforce::render {
 namespace {
 
-constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
+constexpr double kCapital = 21;   // px above the baseline at a scale of 1
+constexpr double kCorner = 8;     // px, radius of a plate's corners
+constexpr double kDescender = 7;  // px below it, of letters such as g
 const std::string kPlusMinus = "±";
 
 // The text cut at each ±, which stands as a piece of its own.
@@ -30,46 +31,46 @@ std::vector<std::string> Pieces(const std::string& text) {
   return pieces;
 }
 
-cv::Size PieceSize(const std::string& piece, const TextStyle& style, int* below) {
-  return cv::getTextSize(piece == kPlusMinus ? "+" : piece, kFont, style.scale, style.width, below);
+// px at a scale of 1.
+double Advance(const std::string& piece) {
+  return Alphabet::Advance(piece == kPlusMinus ? "+" : piece);
 }
 
-void DrawPlusMinus(Brush* brush, const cv::Point2d& baseline_left, const cv::Size& size,
-                   int width) {
-  const double arm = 0.28 * size.width;
-  const cv::Point2d foot = baseline_left + cv::Point2d(0.5 * size.width, 0);
-  const cv::Point2d cross = foot - cv::Point2d(0, size.height - arm);
+void DrawPlusMinus(Brush* brush, const cv::Point2d& baseline_left, const TextStyle& style,
+                   double width) {
+  const double arm = 0.28 * style.scale * Advance(kPlusMinus);
+  const cv::Point2d foot = baseline_left + cv::Point2d(0.5 * style.scale * Advance(kPlusMinus), 0);
+  const cv::Point2d cross = foot - cv::Point2d(0, kCapital * style.scale - arm);
   brush->Line(cross - cv::Point2d(arm, 0), cross + cv::Point2d(arm, 0), width);
   brush->Line(cross - cv::Point2d(0, arm), cross + cv::Point2d(0, arm), width);
   brush->Line(foot - cv::Point2d(arm, 0), foot + cv::Point2d(arm, 0), width);
 }
 
-void Letters(Brush* brush, const std::string& text, cv::Point at, const TextStyle& style,
-             int width) {
+void Letters(Brush* brush, const std::string& text, cv::Point2d pen, const TextStyle& style,
+             double width) {
   for (const std::string& piece : Pieces(text)) {
-    int below = 0;
-    const cv::Size size = PieceSize(piece, style, &below);
     if (piece == kPlusMinus) {
-      DrawPlusMinus(brush, at, size, width);
+      DrawPlusMinus(brush, pen, style, width);
+      pen.x += style.scale * Advance(piece);
     } else {
-      brush->Text(piece, at, kFont, style.scale, width);
+      pen = brush->Text(piece, pen, style.scale, width);
     }
-    at.x += size.width;
   }
 }
 
 }  // namespace
 
 TextExtent MeasureText(const std::string& text, const TextStyle& style) {
-  TextExtent extent;
+  double length = 0;  // px at a scale of 1
+  bool below = false;
   for (const std::string& piece : Pieces(text)) {
-    int below = 0;
-    const cv::Size size = PieceSize(piece, style, &below);
-    extent.width += size.width;
-    extent.above = std::max(extent.above, size.height);
-    extent.below = std::max(extent.below, below);
+    length += Advance(piece);
+    below |= piece.find_first_of("gjpqy,;()[]_") != std::string::npos;
   }
-  return extent;
+  const auto whole = [](double px) { return static_cast<int>(std::ceil(px)); };
+  return {whole(length * style.scale + style.width),
+          whole(kCapital * style.scale + style.width / 2),
+          below ? whole(kDescender * style.scale + style.width / 2) : 0};
 }
 
 void DrawText(Brush* brush, const std::string& text, const cv::Point& baseline_left,
@@ -81,7 +82,7 @@ void DrawText(Brush* brush, const std::string& text, const cv::Point& baseline_l
 }
 
 void DrawPlate(Brush* brush, const cv::Rect& box) {
-  const double radius = 0.2 * std::min(box.width, box.height);
+  const double radius = std::min({kCorner, 0.2 * box.width, 0.2 * box.height});
   const cv::Point2d inner_a(box.x + radius, box.y + radius);
   const cv::Point2d inner_b(box.br().x - radius, box.br().y - radius);
   std::vector<cv::Point2d> outline;

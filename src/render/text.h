@@ -9,7 +9,7 @@ namespace softforce::render {
 // OpenCV's letters, and the sign ± that they lack.
 struct TextStyle {
   double scale = 0.55;  // of the font, for a picture of unit 1
-  int width = 1;        // px, of the letters' strokes
+  double width = 1;     // px, of the letters' strokes
 };
 
 struct TextExtent {

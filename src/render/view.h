@@ -13,6 +13,7 @@ struct View {
   Eigen::Isometry3d T_camera_robot;
   cv::Size size;    // px
   double unit = 1;  // px of this picture per px of a picture 1024 px high
+  double text = 1;  // the same for letters, which must be read in small pictures too
 };
 
 struct Sight {

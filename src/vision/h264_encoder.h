@@ -19,6 +19,7 @@ class H264Encoder {
     // x264 spends its bits to please the eye, on flat and noisy ground. Without that, edges come
     // out as well with a third of the bits.
     bool edges_first = false;
+    bool quick = false;  // half the time, half as large again
   };
 
   // Throws InputError if the file cannot be made.

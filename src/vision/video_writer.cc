@@ -11,8 +11,8 @@ namespace {
 H264Encoder::Settings SettingsFor(const cv::Mat& picture, double frames_per_second,
                                   VideoQuality quality) {
   const bool measuring = quality == VideoQuality::kMeasuring;
-  return {picture.size(), frames_per_second, picture.channels() == 1, measuring ? 12 : 23,
-          measuring};
+  return {picture.size(),      frames_per_second, picture.channels() == 1,
+          measuring ? 12 : 23, measuring,         !measuring};
 }
 
 }  // namespace

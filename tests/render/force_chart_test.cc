@@ -27,6 +27,12 @@ ChartSeries Constant(double force, double sd) {
   return series;
 }
 
+cv::Mat Chart(const std::vector<ChartSeries>& series, double now_s, double span_s) {
+  cv::Mat3b strip(kHeight, kWidth);
+  DrawForceChart(strip, series, now_s, span_s);
+  return std::move(strip);
+}
+
 // Rows of the line itself, left of the words.
 cv::Rect LineOf(const cv::Mat& chart) {
   return cv::boundingRect(PixelsOf(chart, kFirstColour).colRange(0, kWidth - 200));
@@ -40,20 +46,20 @@ TEST(ForceChart, RoundsItsScaleUp) {
 }
 
 TEST(ForceChart, AConstantForceIsALevelLineAtItsHeight) {
-  const cv::Rect half = LineOf(DrawForceChart({kWidth, kHeight}, {Constant(0.5, 0)}, 10, 10));
-  const cv::Rect full = LineOf(DrawForceChart({kWidth, kHeight}, {Constant(1, 0)}, 10, 10));
+  const cv::Rect half = LineOf(Chart({Constant(0.5, 0)}, 10, 10));
+  const cv::Rect full = LineOf(Chart({Constant(1, 0)}, 10, 10));
   EXPECT_LE(half.height, 5) << "px, a line of 2 that ends in a disc of 5";
   EXPECT_GT(half.width, kWidth / 2);
   EXPECT_EQ(half.y, full.y) << "each fills its own scale, 0.5 N and 1 N";
   const ChartSeries two[] = {Constant(0.5, 0), Constant(1, 0)};
-  const cv::Rect lower = LineOf(DrawForceChart({kWidth, kHeight}, {two[0], two[1]}, 10, 10));
+  const cv::Rect lower = LineOf(Chart({two[0], two[1]}, 10, 10));
   EXPECT_GT(lower.y, full.y + 20) << "px; beside 1 N, 0.5 N is half as high";
 }
 
 TEST(ForceChart, TheBandIsAsWideAsTheStandardDeviation) {
-  const cv::Mat thin = DrawForceChart({kWidth, kHeight}, {Constant(0.5, 0.01)}, 10, 10);
-  const cv::Mat wide = DrawForceChart({kWidth, kHeight}, {Constant(0.5, 0.1)}, 10, 10);
-  const cv::Mat none = DrawForceChart({kWidth, kHeight}, {Constant(0.5, 0)}, 10, 10);
+  const cv::Mat thin = Chart({Constant(0.5, 0.01)}, 10, 10);
+  const cv::Mat wide = Chart({Constant(0.5, 0.1)}, 10, 10);
+  const cv::Mat none = Chart({Constant(0.5, 0)}, 10, 10);
   const auto height = [&](const cv::Mat& chart) {
     const cv::Vec3b ground = chart.at<cv::Vec3b>(2, 2);
     int rows = 0;
@@ -70,16 +76,15 @@ TEST(ForceChart, TheBandIsAsWideAsTheStandardDeviation) {
 TEST(ForceChart, AGapStaysAGap) {
   ChartSeries series = Constant(0.5, 0.01);
   for (int i = 40; i < 60; ++i) series.value[i] = series.sd[i] = NAN;
-  const cv::Mat1b line =
-      PixelsOf(DrawForceChart({kWidth, kHeight}, {series}, 10, 10), kFirstColour);
-  const cv::Rect whole = LineOf(DrawForceChart({kWidth, kHeight}, {Constant(0.5, 0)}, 10, 10));
+  const cv::Mat1b line = PixelsOf(Chart({series}, 10, 10), kFirstColour);
+  const cv::Rect whole = LineOf(Chart({Constant(0.5, 0)}, 10, 10));
   const int middle = whole.x + whole.width / 2;
   EXPECT_EQ(cv::countNonZero(line.colRange(middle - 20, middle + 20)), 0);
   EXPECT_GT(cv::countNonZero(line.colRange(whole.x, middle - 80)), 0);
 }
 
 TEST(ForceChart, WithoutForcesItIsAnEmptyScale) {
-  const cv::Mat chart = DrawForceChart({kWidth, kHeight}, {}, 1, 1);
+  const cv::Mat chart = Chart({}, 1, 1);
   EXPECT_EQ(chart.size(), cv::Size(kWidth, kHeight));
   EXPECT_EQ(cv::countNonZero(PixelsOf(chart, kFirstColour)), 0);
 }

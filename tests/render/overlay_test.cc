@@ -30,7 +30,7 @@ Eigen::Isometry3d FacingCamera() {
   return T_camera_robot;
 }
 
-cv::Mat MakePicture() { return cv::Mat(512, 640, CV_8UC1, cv::Scalar(kGrey)); }
+cv::Mat3b MakePicture() { return cv::Mat3b(512, 640, cv::Vec3b::all(kGrey)); }
 
 // Squares across z, 0.16 m wide with a corner at every 0.02 m, seen from +z.
 struct Plate {
@@ -68,8 +68,11 @@ cv::Point2d PixelOf(const Eigen::Vector3d& p_robot) {
   return {projection.pixel.x(), projection.pixel.y()};
 }
 
-cv::Mat Draw(const OverlayScene& scene) {
-  return DrawOverlay(MakePicture(), MakeCamera(), FacingCamera(), scene);
+cv::Mat3b Draw(const OverlayScene& scene, const OverlayOptions& options = {},
+               Easel* easel = nullptr) {
+  cv::Mat3b picture = MakePicture();
+  DrawOverlay(picture, MakeCamera(), FacingCamera(), scene, options, easel);
+  return picture;
 }
 
 // Where the drawing differs from the picture.
@@ -111,16 +114,6 @@ TEST(DrawOverlay, ChangesNothingForAnEmptyScene) {
   ASSERT_EQ(drawn.type(), CV_8UC3);
   ASSERT_EQ(drawn.size(), cv::Size(640, 512));
   EXPECT_EQ(cv::countNonZero(Changed(drawn)), 0);
-}
-
-TEST(DrawOverlay, LeavesThePictureGivenToItAlone) {
-  const cv::Mat picture(512, 640, CV_8UC3, cv::Scalar::all(kGrey));
-  OverlayScene scene;
-  scene.caption = {"frame 7"};
-
-  DrawOverlay(picture, MakeCamera(), FacingCamera(), scene);
-
-  EXPECT_EQ(cv::countNonZero(Changed(picture)), 0);
 }
 
 TEST(DrawOverlay, WritesTheCaptionAtTheTopLeftOnly) {
@@ -167,8 +160,7 @@ TEST(DrawOverlay, MakesTheArrowAsLongAsTheScaleSays) {
   OverlayOptions options;
   options.metres_per_newton = 0.03;
 
-  const cv::Rect arrow =
-      BoxOfArrow(DrawOverlay(MakePicture(), MakeCamera(), FacingCamera(), scene, options));
+  const cv::Rect arrow = BoxOfArrow(Draw(scene, options));
 
   EXPECT_NEAR(arrow.width, 0.03 / 0.5 * 800, 4);  // px
 }
@@ -207,7 +199,7 @@ TEST(DrawOverlay, ShowsAFieldInTheColoursOfItsScale) {
   OverlayOptions options;
   options.net = false;
 
-  const cv::Mat3b drawn = DrawOverlay(MakePicture(), MakeCamera(), FacingCamera(), scene, options);
+  const cv::Mat3b drawn = Draw(scene, options);
 
   const auto at = [&](double x) { return drawn(cv::Point(PixelOf({x, 0.01, 0}))); };
   const cv::Vec3b low = at(-0.078), middle = at(0), high = at(0.078);
@@ -331,6 +323,25 @@ TEST(DrawOverlay, GivesTheSameBytesAgain) {
   scene.caption = {"frame 7"};
 
   EXPECT_EQ(cv::norm(Draw(scene), Draw(scene), cv::NORM_INF), 0);
+}
+
+TEST(DrawOverlay, DoesNotDependOnWhatItsEaselServedBefore) {
+  const Plate fine = MakePlate({0, -0.03}, true), turned = MakePlate({0.01}, true);
+  OverlayScene scene, other;
+  scene.surface = &fine.surface;
+  scene.x = &fine.x;
+  scene.field = SurfaceField{"displacement", "mm", 10 * fine.x.row(0).cwiseAbs(), 1};
+  scene.markers = {{"3", MarkerMark::kSeen, {0.02, 0.01, 0}}};
+  other.surface = &turned.surface;
+  other.x = &turned.x;
+  other.forces = {{"F1", {0.01, -0.02, 0}, {0.3, 0.2, -0.4}, 0.01}};
+  Easel easel;
+
+  Draw(other, {}, &easel);
+  cv::Mat3b small(400, 300, cv::Vec3b::all(kGrey));
+  DrawOverlay(small, MakeCamera(), FacingCamera(), other, {}, &easel);
+
+  EXPECT_EQ(cv::norm(Draw(scene, {}, &easel), Draw(scene), cv::NORM_INF), 0);
 }
 
 }  // namespace

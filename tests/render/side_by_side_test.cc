@@ -1,55 +1,71 @@
-#include <gtest/gtest.h>
+#include "softforce/render/side_by_side.h"
 
-#include "softforce/render/overlay.h"
+#include <gtest/gtest.h>
 
 namespace softforce::render {
 namespace {
 
-cv::Mat MakePicture(int width, int height, int type = CV_8UC3) {
-  return cv::Mat(height, width, type, cv::Scalar::all(90));
-}
-
 TEST(SideBySide, KeepsPicturesThatFit) {
-  const cv::Mat row =
-      SideBySide({MakePicture(640, 512), MakePicture(640, 512)}, {"left", "right"}, 1280);
+  const PictureRow row = SideBySide({{640, 512}, {640, 512}}, 1280);
 
-  EXPECT_EQ(row.size(), cv::Size(1280, 512));
-  EXPECT_EQ(row.type(), CV_8UC3);
+  EXPECT_EQ(row.size, cv::Size(1280, 512));
+  EXPECT_EQ(row.cells[1], cv::Rect(640, 0, 640, 512));
 }
 
 TEST(SideBySide, ScalesAllPicturesDownTogether) {
-  const cv::Mat row =
-      SideBySide({MakePicture(1280, 1024), MakePicture(640, 512)}, {"left", "right"}, 960);
+  const PictureRow row = SideBySide({{1280, 1024}, {640, 512}}, 960);
 
-  EXPECT_EQ(row.size(), cv::Size(960, 512));
-  EXPECT_EQ(row.at<cv::Vec3b>(128, 800), cv::Vec3b(90, 90, 90));  // the second is half as large
-  EXPECT_EQ(row.at<cv::Vec3b>(400, 800), cv::Vec3b(0, 0, 0));
+  EXPECT_EQ(row.size, cv::Size(960, 512));
+  EXPECT_EQ(row.cells[1], cv::Rect(640, 0, 320, 256));
 }
 
 TEST(SideBySide, NeverExceedsTheWidthAndHasEvenSides) {
   for (int max_width = 301; max_width < 340; ++max_width) {
-    const cv::Mat row =
-        SideBySide({MakePicture(641, 511), MakePicture(641, 511), MakePicture(333, 511)},
-                   {"a", "b", "c"}, max_width);
-    EXPECT_LE(row.cols, max_width);
-    EXPECT_EQ(row.cols % 2, 0);
-    EXPECT_EQ(row.rows % 2, 0);
+    const PictureRow row = SideBySide({{641, 511}, {641, 511}, {333, 511}}, max_width);
+    EXPECT_LE(row.size.width, max_width);
+    EXPECT_EQ(row.size.width % 2, 0);
+    EXPECT_EQ(row.size.height % 2, 0);
   }
 }
 
-TEST(SideBySide, TakesGreyPictures) {
-  const cv::Mat row = SideBySide({MakePicture(640, 512, CV_8UC1)}, {"left"}, 1280);
-
-  EXPECT_EQ(row.type(), CV_8UC3);
-  EXPECT_EQ(row.at<cv::Vec3b>(100, 100), cv::Vec3b(90, 90, 90));
+TEST(PutPicture, TakesGreyPicturesAndColouredOnesOfAnySize) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    for (const cv::Size& size : {cv::Size(40, 30), cv::Size(80, 60)}) {
+      cv::Mat3b page(40, 50, cv::Vec3b(1, 2, 3));
+      PutPicture(cv::Mat(size, type, cv::Scalar::all(90)), page(cv::Rect(5, 5, 40, 30)));
+      EXPECT_EQ(page(5, 5), cv::Vec3b(90, 90, 90));
+      EXPECT_EQ(page(34, 44), cv::Vec3b(90, 90, 90));
+      EXPECT_EQ(page(35, 45), cv::Vec3b(1, 2, 3)) << "beside the cell";
+    }
+  }
 }
 
-TEST(SideBySide, WritesADifferentNameOnEachPicture) {
-  const cv::Mat row =
-      SideBySide({MakePicture(640, 512), MakePicture(640, 512)}, {"left", "right"}, 1280);
+TEST(Scaled, SeesAPointWhereTheScaledPictureShowsIt) {
+  camera::Camera camera;
+  camera.width = 1280;
+  camera.height = 1024;
+  camera.lens.fx = camera.lens.fy = 1500;
+  camera.lens.cx = 640;
+  camera.lens.cy = 500;
+  camera.lens.distortion[0] = -0.1;
+  const Eigen::Vector3d p_camera(0.1, -0.07, 0.5);
+  const Eigen::Vector2d full = camera::Project(camera.lens, p_camera).pixel;
 
-  const cv::Mat left = row.colRange(0, 640);
-  const cv::Mat right = row.colRange(640, 1280);
+  const camera::Camera half = Scaled(camera, {1280, 1024}, {640, 512});
+
+  // Pixels count from the centre of the first one, which is half a pixel from the picture's corner.
+  const Eigen::Vector2d expected = (full.array() + 0.5) / 2 - 0.5;
+  EXPECT_LT((camera::Project(half.lens, p_camera).pixel - expected).norm(), 1e-9);  // px; rounding
+  EXPECT_EQ(half.width, 640);
+}
+
+TEST(DrawName, WritesADifferentNameOnEachPicture) {
+  cv::Mat3b left(512, 640, cv::Vec3b::all(90)), right = left.clone();
+  Easel easel;
+
+  DrawName(left, "left", &easel);
+  DrawName(right, "right", &easel);
+
   EXPECT_GT(cv::norm(left, right, cv::NORM_INF), 50);
 }
 

@@ -8,6 +8,7 @@
 
 #include "softforce/camera/rig.h"
 #include "softforce/mesh/surface.h"
+#include "softforce/render/easel.h"
 
 namespace softforce::render {
 
@@ -66,20 +67,15 @@ struct OverlayOptions {
   bool net = true;                  // the edges of the body's surface
 };
 
-// The picture (8 bits, grey or colour) in colour with the scene drawn over it: the body's visible
-// surface as a net, over colours with a scale if there is a field (faces behind others or turned
-// away are not drawn), markers by status, candidates, cables, axes (x red, y green, z blue), 95 %
-// regions, and force arrows with their value in newtons; everything goes through the lens model.
-// An arrow ends at the place where a push acts and starts there where the force pulls, so that it
-// stays outside the body; parts of it behind the body are fainter. A push or a pull is told by the
-// surface's normal; without a surface every force counts as a push.
-cv::Mat DrawOverlay(const cv::Mat& grey, const camera::Camera& camera,
-                    const Eigen::Isometry3d& T_camera_robot, const OverlayScene& scene,
-                    const OverlayOptions& options = {});
-
-// Pictures side by side, each with its camera's name, scaled down together to at most `max_width`
-// px. Width and height of the result are even, as video codecs want them.
-cv::Mat SideBySide(const std::vector<cv::Mat>& pictures, const std::vector<std::string>& names,
-                   int max_width);
+// Draws the scene over a camera's picture: the body's visible surface as a net, over colours with a
+// scale if there is a field (faces behind others or turned away are not drawn), markers by status,
+// candidates, cables, axes (x red, y green, z blue), 95 % regions, and force arrows with their
+// value in newtons; everything goes through the lens model. Strokes and letters are fitted to the
+// picture's size. An arrow ends at the place where a push acts and starts there where the force
+// pulls, so that it stays outside the body; parts of it behind the body are fainter. A push or a
+// pull is told by the surface's normal; without a surface every force counts as a push.
+void DrawOverlay(cv::Mat3b picture, const camera::Camera& camera,
+                 const Eigen::Isometry3d& T_camera_robot, const OverlayScene& scene,
+                 const OverlayOptions& options = {}, Easel* easel = nullptr);
 
 }  // namespace softforce::render

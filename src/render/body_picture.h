@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/depth_buffer.h"
+#include "render/view.h"
+#include "softforce/mesh/surface.h"
+
+namespace softforce::render {
+
+// The body as one camera sees it.
+struct BodyPicture {
+  std::vector<Sight> nodes;        // as many as columns of x; set for nodes of the surface
+  std::vector<bool> faces_camera;  // of each triangle
+  DepthBuffer depth;               // its triangles are pieces, see NodesOfPiece
+};
+
+// The flat pieces of the surface's triangles: one of 3 nodes, four of 6.
+int NumPieces(const mesh::Surface& surface);
+std::array<int, 3> NodesOfPiece(const mesh::Surface& surface, int piece);
+
+// In memory that was used before; nothing else of what it held is kept.
+void PictureBody(const View& view, const mesh::Surface& surface, const Eigen::Matrix3Xd& x,
+                 BodyPicture* body);
+
+}  // namespace softforce::render
