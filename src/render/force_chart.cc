@@ -120,6 +120,7 @@ void DrawForceChart(cv::Mat3b strip, const std::vector<ChartSeries>& series, dou
       now_s - span_s,
       now_s,
       1};
+  axes.from_s -= 1e-9 * span_s;  // rounding must not cost the first point
   const double largest = LargestShown(series, axes.from_s);
   if (largest > 0) axes.top = RoundUp(largest);
   DrawGrid(&brush, axes, style);

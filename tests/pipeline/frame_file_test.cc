@@ -29,6 +29,8 @@ FrameInWork SomeFrame() {
   force.rest = {0.011, 0.021, 0.031};
   force.force = {0.1, -0.2, 0.3};
   force.covariance = 0.01 * Eigen::Matrix3d::Identity();
+  force.alternatives = {14, 9};
+  frame.result.probability = 0.83;
   frame.result.forces.push_back(force);
   MarkerResult marker;
   marker.id = 4;
@@ -71,6 +73,8 @@ TEST(FrameFile, GivesBackWhatThePictureShows) {
   EXPECT_EQ(read->result.forces[0].position, frame.result.forces[0].position);
   EXPECT_EQ(read->result.forces[0].force, frame.result.forces[0].force);
   EXPECT_EQ(read->result.forces[0].covariance, frame.result.forces[0].covariance);
+  EXPECT_EQ(read->result.forces[0].alternatives, (std::vector<int>{14, 9}));
+  EXPECT_EQ(read->result.probability, 0.83);
   ASSERT_EQ(read->result.markers.size(), 1u);
   EXPECT_EQ(read->result.markers[0].status, MarkerStatus::kRejected);
   EXPECT_EQ(read->result.markers[0].model, frame.result.markers[0].model);
@@ -78,9 +82,18 @@ TEST(FrameFile, GivesBackWhatThePictureShows) {
   EXPECT_TRUE(read->result.markers[0].measured.hasNaN());
   EXPECT_EQ(read->T_rig_robot.matrix(), frame.T_rig_robot.matrix());
   EXPECT_EQ(read->largest_displacement, 0.04);
-  // m: half a step, and rounding.
-  EXPECT_LE((read->u - frame.u).cwiseAbs().maxCoeff(), 0.5001 * 0.03 / 32767);
+  // m: half a step, which is less than twice the largest component by 32767.
+  EXPECT_LE((read->u - frame.u).cwiseAbs().maxCoeff(), 0.03 / 32767);
   EXPECT_FALSE(reader.Next());
+}
+
+TEST(FrameFile, KeepsEveryBitOfAShapeThatItGaveBack) {
+  const Eigen::Matrix3Xd u = SomeFrame().u;
+  for (const double size : {1.0, 0.7, 1.0 / 3, 1e-9, 32767 / 0.03, 16383.5 / 0.03}) {
+    const Eigen::Matrix3Xd kept = AsKept(size * u);
+    EXPECT_EQ(AsKept(kept), kept) << size;
+  }
+  EXPECT_EQ(AsKept(Eigen::Matrix3Xd::Zero(3, 2)), Eigen::Matrix3Xd::Zero(3, 2));
 }
 
 TEST(FrameFile, OfAnotherBodyIsRefused) {
