@@ -46,7 +46,10 @@ void DrawNet(Brush* brush, const View& view, const mesh::Surface& surface,
     });
   };
   const auto draw_edge = [&](const Edge& edge, double width) {
-    if (edge.middle < 0) {
+    const bool straight =
+        edge.middle < 0 ||
+        IsMiddle(body.nodes[edge.first], body.nodes[edge.middle], body.nodes[edge.second]);
+    if (straight) {
       draw(edge.first, edge.second, width);
     } else {
       draw(edge.first, edge.middle, width);

@@ -1,5 +1,7 @@
 #include "render/body_picture.h"
 
+#include <cmath>
+
 namespace softforce::render {
 namespace {
 
@@ -9,12 +11,37 @@ bool FacesCamera(const Sight& a, const Sight& b, const Sight& c) {
   return (b.pixel - a.pixel).cross(c.pixel - a.pixel) < 0;
 }
 
-// A 6-node triangle is four flat ones.
-constexpr std::array<std::array<int, 3>, 4> kPieces{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+// Of a 6-node triangle.
+constexpr std::array<std::array<int, 3>, 5> kPieces{
+    {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}, {0, 1, 2}}};
 
-int PiecesPerTriangle(const mesh::Surface& surface) { return surface.order() == 1 ? 1 : 4; }
+int PiecesPerTriangle(const mesh::Surface& surface) {
+  return surface.order() == 1 ? 1 : static_cast<int>(kPieces.size());
+}
+
+void AddPiece(const mesh::Surface& surface, int piece, BodyPicture* body) {
+  const auto [i, j, k] = NodesOfPiece(surface, piece);
+  const Sight &a = body->nodes[i], &b = body->nodes[j], &c = body->nodes[k];
+  if (FacesCamera(a, b, c)) body->depth.AddTriangle(a, b, c, piece);
+}
+
+bool IsFlat(const mesh::Surface& surface, int triangle, const BodyPicture& body) {
+  const auto node = [&](int i) -> const Sight& {
+    return body.nodes[surface.triangles(i, triangle)];
+  };
+  return IsMiddle(node(0), node(3), node(1)) && IsMiddle(node(1), node(4), node(2)) &&
+         IsMiddle(node(2), node(5), node(0));
+}
 
 }  // namespace
+
+bool IsMiddle(const Sight& a, const Sight& b, const Sight& c) {
+  constexpr double kPixels = 0.2, kDepth = 2e-4;  // of the depth; what hides has ten times as much
+  if (!a.visible || !b.visible || !c.visible) return false;
+  return cv::norm(b.pixel - (a.pixel + c.pixel) / 2) < kPixels &&
+         std::abs(b.inverse_depth - (a.inverse_depth + c.inverse_depth) / 2) <
+             kDepth * b.inverse_depth;
+}
 
 int NumPieces(const mesh::Surface& surface) {
   return PiecesPerTriangle(surface) * surface.num_triangles();
@@ -42,11 +69,14 @@ void PictureBody(const View& view, const mesh::Surface& surface, const Eigen::Ma
     const auto corner = [&](int i) -> const Sight& { return body->nodes[surface.triangles(i, t)]; };
     body->faces_camera[t] = FacesCamera(corner(0), corner(1), corner(2));
   }
-  const int pieces = NumPieces(surface);
-  for (int p = 0; p < pieces; ++p) {
-    const auto [i, j, k] = NodesOfPiece(surface, p);
-    const Sight &a = body->nodes[i], &b = body->nodes[j], &c = body->nodes[k];
-    if (FacesCamera(a, b, c)) body->depth.AddTriangle(a, b, c, p);
+  const int per_triangle = PiecesPerTriangle(surface);
+  for (int t = 0; t < surface.num_triangles(); ++t) {
+    const int last = (t + 1) * per_triangle - 1;
+    if (per_triangle == 1 || IsFlat(surface, t, *body)) {
+      AddPiece(surface, last, body);
+    } else {
+      for (int p = t * per_triangle; p < last; ++p) AddPiece(surface, p, body);
+    }
   }
 }
 

@@ -81,14 +81,23 @@ void Brush::Disc(const cv::Point2d& centre, double radius) {
 }
 
 void Brush::Arc(const cv::Point2d& centre, double radius, double from, double to, double width) {
-  constexpr double kStep = 10;  // degrees
-  const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / kStep)));
-  std::vector<cv::Point2d> points;
-  for (int i = 0; i <= pieces; ++i) {
-    const double angle = (from + (to - from) * i / pieces) * CV_PI / 180;
-    points.push_back(centre + radius * cv::Point2d(std::cos(angle), std::sin(angle)));
+  const double reach = radius + width / 2 + 1;
+  const cv::Rect box = BoxAround(centre, centre, reach) & cv::Rect({}, picture_.size());
+  const auto within = [&](double dx, double dy) {
+    if (to - from >= 360) return true;
+    const double beyond = std::fmod(std::atan2(dy, dx) * 180 / CV_PI - from + 720, 360);
+    return beyond <= to - from;
+  };
+  for (int y = box.y; y < box.br().y; ++y) {
+    for (int x = box.x; x < box.br().x; ++x) {
+      const double dx = x - centre.x, dy = y - centre.y;
+      const double covered = width / 2 + 0.5 - std::abs(std::sqrt(dx * dx + dy * dy) - radius);
+      if (covered <= 0 || !within(dx, dy)) continue;
+      uchar& coverage = mask_(y, x);
+      coverage = std::max(coverage, static_cast<uchar>(255 * std::min(covered, 1.0)));
+    }
   }
-  Polyline(points, width);
+  Touch(box);
 }
 
 cv::Point2d Brush::Text(const std::string& text, const cv::Point2d& baseline_left, double scale,

@@ -11,6 +11,20 @@ namespace {
 
 int Even(double length) { return std::max(2, 2 * static_cast<int>(std::floor(length / 2))); }
 
+// In halves as far as these go, each pixel the mean of four, and between pixels for the rest: a
+// tenth of the time of means over parts of pixels.
+cv::Mat InSize(cv::Mat picture, const cv::Size& size) {
+  while (picture.cols >= 2 * size.width && picture.rows >= 2 * size.height) {
+    cv::Mat half;
+    cv::resize(picture, half, picture.size() / 2, 0, 0, cv::INTER_AREA);
+    picture = half;
+  }
+  if (picture.size() == size) return picture;
+  cv::Mat scaled;
+  cv::resize(picture, scaled, size, 0, 0, cv::INTER_LINEAR);
+  return scaled;
+}
+
 }  // namespace
 
 PictureRow SideBySide(const std::vector<cv::Size>& pictures, int max_width) {
@@ -28,10 +42,7 @@ PictureRow SideBySide(const std::vector<cv::Size>& pictures, int max_width) {
 }
 
 void PutPicture(const cv::Mat& picture, cv::Mat3b cell) {
-  cv::Mat scaled = picture;
-  if (picture.size() != cell.size()) {
-    cv::resize(picture, scaled, cell.size(), 0, 0, cv::INTER_AREA);
-  }
+  const cv::Mat scaled = InSize(picture, cell.size());
   if (scaled.channels() == 1) {
     cv::cvtColor(scaled, cell, cv::COLOR_GRAY2BGR);
   } else {
