@@ -54,9 +54,9 @@ void DrawGrid(Brush* brush, const Axes& axes, const TextStyle& style) {
         {static_cast<int>(left.x) - extent.width - 8, static_cast<int>(left.y) + extent.above / 2},
         style, kWords);
   }
-  // At round times, some five of them.
+  // At round times, some five of them, and 0 without a sign.
   const double step = RoundUp((axes.to_s - axes.from_s) / 6);
-  for (double t = std::ceil(axes.from_s / step) * step; t <= axes.to_s; t += step) {
+  for (double t = std::ceil(axes.from_s / step) * step + 0.0; t <= axes.to_s; t += step) {
     const cv::Point2d foot = axes.At(t, 0);
     brush->Line(foot, foot - cv::Point2d(0, 4), 1);
     brush->Paint(kWords, 1);

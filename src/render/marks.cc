@@ -1,9 +1,13 @@
 #include "render/marks.h"
 
+#include <algorithm>
+
 #include "render/palette.h"
 
 namespace softforce::render {
 namespace {
+
+constexpr double kLeastWidth = 1.8;  // px, of strokes that have to be told apart by colour
 
 cv::Vec3b MarkColour(MarkerMark mark) {
   switch (mark) {
@@ -26,7 +30,7 @@ double MarkRadius(double unit) { return 13 * unit; }
 void DrawMark(Brush* brush, MarkerMark mark, const cv::Point2d& pixel, double unit) {
   const double radius = MarkRadius(unit);
   const auto shape = [&](double extra) {
-    const double width = 2 * unit + extra;
+    const double width = std::max(kLeastWidth, 2 * unit) + extra;
     switch (mark) {
       case MarkerMark::kSeen:
         brush->Arc(pixel, radius, 0, 360, width);
@@ -47,7 +51,7 @@ void DrawMark(Brush* brush, MarkerMark mark, const cv::Point2d& pixel, double un
       }
     }
   };
-  brush->PaintSeamed(MarkColour(mark), 1, unit, shape);
+  brush->PaintSeamed(MarkColour(mark), 1, std::max(kLeastWidth / 2, unit), shape);
 }
 
 std::vector<std::vector<cv::Point2d>> Dashes(const std::vector<cv::Point2d>& points,
