@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <exception>
 #include <vector>
@@ -37,6 +38,8 @@ int RunProgram(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Ceres logs what it could not solve; what that means for the user is in our own statuses.
+  FLAGS_minloglevel = google::GLOG_FATAL;
   try {
     return RunProgram(argc, argv);
   } catch (const softforce::base::InputError& error) {

@@ -234,16 +234,24 @@ Tracker::Attempt Tracker::Settle(Allocated allocated,
   return attempt;
 }
 
-void Tracker::LearnLooks(const std::vector<CameraDetections>& detections,
-                         const std::vector<char>& rejected) {
+std::vector<PredictedFeature> Tracker::PlacedFeatures() const {
   const Eigen::Matrix3Xd x = world_.mesh().nodes + estimator_.state().u;
   std::vector<PredictedFeature> features;
-  FeatureSightings sightings = sightings_;
   for (const Feature& feature : features_.features()) {
-    const size_t f = features.size();
-    features.emplace_back();
-    features[f].position = feature.point.weights.Apply(x) + feature.point.offset;
-    features[f].diameter = feature.diameter;
+    PredictedFeature placed;
+    placed.position = feature.point.weights.Apply(x) + feature.point.offset;
+    placed.normal = mesh::Normal(world_.surface, x, feature.point.at);
+    placed.diameter = feature.diameter;
+    features.push_back(std::move(placed));
+  }
+  return features;
+}
+
+void Tracker::LearnLooks(const std::vector<CameraDetections>& detections,
+                         const std::vector<char>& rejected) {
+  const std::vector<PredictedFeature> features = PlacedFeatures();
+  FeatureSightings sightings = sightings_;
+  for (size_t f = 0; f < features.size(); ++f) {
     if (rejected[f]) sightings.dots[f].clear();
   }
   const std::vector<DotLook> seen =

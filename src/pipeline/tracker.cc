@@ -5,6 +5,7 @@
 
 #include "pipeline/actuators.h"
 #include "pipeline/force_locator.h"
+#include "pipeline/shape_memory.h"
 #include "softforce/base/input_error.h"
 #include "softforce/pipeline/observe_points.h"
 
@@ -57,6 +58,7 @@ Tracker::Tracker(const scene::Scene& scene, const World& world, const camera::Ri
                  scene.forces.known_locations ? options.estimator
                                               : FollowingOptions(world, options.estimator),
                  Uncertainties(scene)),
+      shapes_(std::make_unique<ShapeMemory>(world.marker_spacing)),
       intensity_covariance_(
           Eigen::MatrixXd::Zero(estimator_.num_components(), estimator_.num_components())) {
   options_.Check();
@@ -123,7 +125,11 @@ FrameResult Tracker::Process(int frame, double time_s,
       result.forces = ForceResults(estimate);
     }
   }
-  if (estimate.ok() && attempt.allocated.joint()) LearnLooks(detections, rejected);
+  if (estimate.ok() && attempt.allocated.joint()) {
+    LearnLooks(detections, rejected);
+    const std::vector<PredictedFeature> features = PlacedFeatures();
+    if (shapes_->IsNew(features)) shapes_->Learn(estimator_.Remember(), features);
+  }
   sighted_before_ = estimate.ok() ? std::move(sighted_) : std::vector<std::vector<char>>();
   result.markers = MarkerResults(located, rejected);
   TellWhatIsAbsent(&result.markers);

@@ -46,6 +46,7 @@ geometry::Matrix6d InRobotFrame(const geometry::Matrix6d& rig_covariance,
                                 const Eigen::Isometry3d& T_rig_robot);
 
 class ForceLocator;
+class ShapeMemory;
 
 // From detections to forces, frame after frame: predicts the features from the body's last state
 // and the new actuation, allocates detections to them, locates them, and estimates the forces.
@@ -86,6 +87,7 @@ class Tracker {
     Eigen::VectorXd intensity;  // N, that the prior is about
 
     bool joint() const { return prior.mean.size() > 0; }
+    int held() const;  // features that were located
   };
   // A way to understand a frame.
   struct Attempt {
@@ -96,6 +98,17 @@ class Tracker {
 
     int used() const;
     int rejected() const;
+  };
+  // Where a wide search looks about.
+  struct Beginning {
+    enum class At { kLastState, kUnloaded, kShape };
+
+    At at;
+    const estimation::ForceEstimator::Memory* state = nullptr;  // kShape
+  };
+  struct Proposal {
+    Allocated allocated;
+    std::shared_ptr<const estimation::ForceEstimator::Memory> start;  // where it was proposed
   };
 
   // The features at the body's state, by changes of the forces and of the rig's place.
@@ -116,6 +129,13 @@ class Tracker {
   // Where the markers were not found near where they should be.
   std::optional<Attempt> SearchWidely(const std::vector<CameraDetections>& detections,
                                       const fem::Actuation& actuation);
+  // Takes the body to where a wide search may begin: false if it cannot be there.
+  bool Begin(const Beginning& beginning, const fem::Actuation& actuation);
+  std::vector<Beginning> Beginnings(const std::vector<CameraDetections>& detections) const;
+  std::vector<Proposal> ProposeAll(const std::vector<CameraDetections>& detections,
+                                   const fem::Actuation& actuation);
+  bool MaySearch();
+  Eigen::Matrix3Xd MarkersNow() const;
   std::vector<Allocated> Propose(const std::vector<CameraDetections>& detections,
                                  const Eigen::MatrixXd& intensities) const;
   // A dot that comes back in one camera alone, while another should see it too, is believed when
@@ -124,6 +144,8 @@ class Tracker {
   // How the dots look that the forces explain, for the next frame.
   void LearnLooks(const std::vector<CameraDetections>& detections,
                   const std::vector<char>& rejected);
+  // The features at the body's state, without their uncertainties.
+  std::vector<PredictedFeature> PlacedFeatures() const;
   // Whether no camera could see the features of each marker.
   void TellWhatIsAbsent(std::vector<MarkerResult>* markers) const;
   std::vector<MarkerObservation> ObservationsOf(const Allocated& allocated,
@@ -150,6 +172,7 @@ class Tracker {
   MarkerFeatures features_;
   estimation::ForceEstimator estimator_;
   std::unique_ptr<ForceLocator> locator_;       // null if places are known
+  std::unique_ptr<ShapeMemory> shapes_;         // that usable frames had
   geometry::Matrix6d registration_covariance_;  // as the estimator takes it
   std::vector<MarkerObservation> observations_;
   FeatureSightings sightings_;
