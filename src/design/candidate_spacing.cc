@@ -1,10 +1,10 @@
 #include "softforce/design/candidate_spacing.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "softforce/fem/compliance.h"
 #include "softforce/geometry/chi_square.h"
 
 namespace softforce::design {
@@ -61,8 +61,7 @@ CandidateGrid JudgeCandidates(double spacing, const std::vector<PlacedLoad>& can
   grid.enough_markers = grid.components <= response.cols();
   if (!grid.enough_markers || candidates.empty()) return grid;
   const Eigen::MatrixXd W = Compliance(candidates, response, grid.components);
-  grid.I_w =
-      W.completeOrthogonalDecomposition().pseudoInverse().cwiseAbs().colwise().sum().maxCoeff();
+  grid.I_w = fem::InverseComplianceNorm(W);
   const std::vector<double> deviations = ForceDeviations(W, markers);
   if (deviations.empty()) return grid;
   grid.force_sd = deviations[deviations.size() / 2];

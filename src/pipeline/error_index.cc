@@ -1,7 +1,8 @@
 #include "pipeline/error_index.h"
 
-#include <Eigen/QR>
 #include <cmath>
+
+#include "softforce/fem/compliance.h"
 
 namespace softforce::pipeline {
 
@@ -14,8 +15,7 @@ double IndexW(const World& world) {
         estimator.Compliance(world.markers[m].weights);
   }
   if (W.rows() < W.cols()) return NAN;
-  const Eigen::MatrixXd inverse = W.completeOrthogonalDecomposition().pseudoInverse();
-  return inverse.cwiseAbs().colwise().sum().maxCoeff();
+  return fem::InverseComplianceNorm(W);
 }
 
 }  // namespace softforce::pipeline

@@ -1,9 +1,9 @@
 // Table I: the inverse model is exact.
 #include <functional>
 
+#include "softforce/fem/compliance.h"
 #include "softforce/validation/direct_model.h"
 #include "softforce/validation/inverse_model.h"
-#include "softforce/validation/measures.h"
 #include "softforce/validation/study.h"
 #include "validation/jobs.h"
 
@@ -39,7 +39,7 @@ ExactCase RunCase(const Layout& layout, const mesh::TetMesh& mesh, const DirectM
   estimation::EstimatorOptions options = LeastSquares(kFinest);
   InverseModel converged(model, &solver, layout, options, kWideSd);
   converged.estimator().Advance(fem::NoActuation(model.body));
-  result.I_w = InverseComplianceNorm(converged.Compliance());
+  result.I_w = fem::InverseComplianceNorm(converged.Compliance());
   // Frame by frame, as the linear method: at I_w = 2000 N/mm what a jump is off the tangent would
   // be taken for tens of newtons.
   for (const fem::Equilibrium& frame : direct.loaded) {
