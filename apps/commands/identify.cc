@@ -54,7 +54,7 @@ std::filesystem::path Target(const IdentifyArguments& arguments) {
   }
   // Where it is a link: the file that it leads to. A scene that is not there is refused when read.
   std::error_code ignored;
-  const auto scene = std::filesystem::weakly_canonical(arguments.scene, ignored);
+  auto scene = std::filesystem::weakly_canonical(arguments.scene, ignored);
   if (std::filesystem::is_regular_file(scene, ignored)) base::CheckCanWrite(scene);
   return scene;
 }

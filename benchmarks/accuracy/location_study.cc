@@ -17,9 +17,11 @@
 #include <vector>
 
 #include "softforce/estimation/location_estimator.h"
+#include "softforce/fem/compliance.h"
 #include "softforce/geometry/chi_square.h"
 #include "softforce/validation/direct_model.h"
 #include "softforce/validation/discretisation.h"
+#include "softforce/validation/inverse_model.h"
 #include "softforce/validation/model.h"
 
 namespace {
@@ -136,6 +138,16 @@ class Bench {
   estimation::LocationEstimate Estimate(estimation::LocationEstimator* estimator,
                                         const std::vector<estimation::Observation>& seen) const {
     return estimator->Estimate(seen, told_);
+  }
+
+  // N/m, of the body at rest with all candidates free.
+  double IndexW() {
+    validation::InverseModel inverse(
+        given_, solver_.get(),
+        {"", arrangement_.body, "", arrangement_.candidates, arrangement_.markers},
+        validation::LeastSquares(1e-6), 1e-4);
+    inverse.estimator().Advance(told_);
+    return fem::InverseComplianceNorm(inverse.Compliance());
   }
 
   Eigen::Vector3d InwardNormal(const Eigen::Vector3d& place) const {
@@ -312,6 +324,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   Bench sheet(OnSheet(), meshes), robot(OnRobot(), meshes);
+  fmt::print("I_w with all candidates free: sheet {:.0f}, robot {:.0f} N/mm\n\n",
+             1e-3 * sheet.IndexW(), 1e-3 * robot.IndexW());
   int row = 0;
   const auto wanted = [&] { return ++row == only || only == 0; };
   fmt::print(

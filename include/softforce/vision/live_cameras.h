@@ -61,7 +61,7 @@ class LiveCameras : public FrameSource {
  public:
   // Opens all cameras and waits for a picture of each. Throws InputError if there is none within
   // the time allowed, if its size is wrong, or if names are missing or given twice.
-  LiveCameras(std::vector<LiveCamera> cameras, const LiveOptions& options = {});
+  explicit LiveCameras(std::vector<LiveCamera> cameras, const LiveOptions& options = {});
   ~LiveCameras() override;
 
   std::optional<FrameSet> Next() override;
