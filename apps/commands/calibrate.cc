@@ -10,6 +10,7 @@
 #include "commands/commands.h"
 #include "commands/live_options.h"
 #include "commands/stop.h"
+#include "commands/write_page.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
 #include "softforce/base/quantity.h"
@@ -122,16 +123,6 @@ report::CalibrationRecord CalibrateLive(const CalibrateArguments& arguments) {
   return pipeline::CalibrateLive(source, names, arguments.options, arguments.guide);
 }
 
-void WriteText(const std::string& path, const std::string& text) {
-  base::PendingFile file(path);
-  std::ofstream stream(file.temporary(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw base::InputError(path, "cannot be written", "Is the disk full?");
-  file.Commit();
-  fmt::print("Written: {}\n", path);
-}
-
 int Calibrate(CalibrateArguments* arguments) {
   pipeline::CalibrateOptions& options = arguments->options;
   options.board = vision::ParseBoard(arguments->board);
@@ -141,7 +132,7 @@ int Calibrate(CalibrateArguments* arguments) {
         base::ParseQuantity(arguments->distance, base::Dimension::kLength, 1, "--distance")[0];
   }
   base::CheckCanWrite(arguments->out);
-  if (!arguments->report.empty()) base::CheckCanWrite(arguments->report);
+  if (!arguments->report.empty()) CheckCanWritePage(arguments->report);
   const std::vector<AlsoFile> also = ParseAlso(arguments->also);
   const bool live = AnyLive(arguments->cameras);
   if (!live) options.inputs = Inputs(*arguments);
@@ -151,7 +142,7 @@ int Calibrate(CalibrateArguments* arguments) {
   const report::CalibrationRecord record =
       live ? CalibrateLive(*arguments) : pipeline::Calibrate(options);
   fmt::print("{}\n", report::FullReport(record));
-  if (!arguments->report.empty()) WriteText(arguments->report, report::CalibrationPage(record));
+  if (!arguments->report.empty()) WritePage(arguments->report, report::CalibrationPage(record));
   if (!record.result.ok()) return 1;
   scene::SaveRig(record.result.rig, arguments->out, pipeline::StatisticsOf(record));
   fmt::print("Written: {}\n", arguments->out);

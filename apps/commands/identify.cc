@@ -7,10 +7,12 @@
 #include "commands/commands.h"
 #include "commands/model_options.h"
 #include "commands/stop.h"
+#include "commands/write_page.h"
 #include "softforce/base/input_error.h"
 #include "softforce/base/pending_file.h"
 #include "softforce/pipeline/identify.h"
 #include "softforce/pipeline/known_weights.h"
+#include "softforce/report/identification_page.h"
 
 namespace softforce::apps {
 namespace {
@@ -21,7 +23,7 @@ struct IdentifyArguments {
   std::string scene;
   std::vector<std::string> cameras;
   std::vector<std::string> unknowns{"youngs_modulus"};
-  std::string out;
+  std::string out, report;
   bool in_place = false;
   std::string correct_mesh = "none";
   pipeline::IdentifyOptions options;
@@ -59,6 +61,15 @@ std::filesystem::path Target(const IdentifyArguments& arguments) {
   return scene;
 }
 
+report::IdentificationRecord RecordOf(const pipeline::IdentifyReport& report) {
+  report::IdentificationRecord record{report.found, {}, report.FullReport()};
+  for (const pipeline::KnownForce& force : report.forces) {
+    record.forces.push_back(
+        {force.state, force.candidate, force.known.norm(), force.estimated.norm()});
+  }
+  return record;
+}
+
 int Identify(IdentifyArguments* arguments) {
   pipeline::IdentifyOptions& options = arguments->options;
   options.unknowns.clear();
@@ -69,9 +80,13 @@ int Identify(IdentifyArguments* arguments) {
   options.sources = ParseCameraSources(arguments->cameras);
   const std::filesystem::path target = Target(*arguments);
   if (!arguments->in_place) options.out = target;
+  if (!arguments->report.empty()) CheckCanWritePage(arguments->report);
   options.stop = StopOnSignal();
   const pipeline::IdentifyReport report = pipeline::Identify(arguments->scene, options);
   fmt::print("{}", report.FullReport());
+  if (!arguments->report.empty()) {
+    WritePage(arguments->report, report::IdentificationPage(RecordOf(report)));
+  }
   if (!report.usable || *options.stop) return 1;
   if (!target.empty()) {
     scene::WriteChangedScene(arguments->scene, report.changes, target);
@@ -99,6 +114,7 @@ Command AddIdentify(CLI::App* program) {
   app->add_option("-o", arguments->out,
                   "Scene file to write, with the values found and all else as it is");
   app->add_flag("--in-place", arguments->in_place, "Write the values into the scene file itself");
+  app->add_option("--report", arguments->report, "HTML page to write, with the report in pictures");
   app->add_option("--camera", arguments->cameras,
                   "NAME=SOURCE: video file of a camera instead of the scene's; may be repeated")
       ->allow_extra_args(false);

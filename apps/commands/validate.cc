@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "commands/commands.h"
+#include "commands/write_page.h"
+#include "softforce/report/study_page.h"
 #include "softforce/validation/study.h"
 #include "softforce/validation/tables.h"
 
@@ -18,11 +21,16 @@ struct ValidateArguments {
 
 int Validate(ValidateArguments* arguments) {
   arguments->options.meshes = arguments->meshes;
-  if (!arguments->out.empty()) validation::PrepareCsv(arguments->out);
+  const std::string page = std::filesystem::path(arguments->out) / "validation.html";
+  if (!arguments->out.empty()) {
+    validation::PrepareCsv(arguments->out);
+    CheckCanWritePage(page);
+  }
   const validation::Study study = validation::RunStudy(arguments->options);
   fmt::print("{}", validation::TextTables(study));
   if (!arguments->out.empty()) {
     fmt::print("\nWritten: {}\n", validation::WriteCsv(arguments->out, study).string());
+    WritePage(page, report::StudyPage(study));
   }
   return 0;
 }
@@ -37,7 +45,9 @@ Command AddValidate(CLI::App* program) {
   app->add_option("--meshes", arguments->meshes,
                   "Folder of sheet.msh, robot.msh and their .geo scripts")
       ->capture_default_str();
-  app->add_option("--out", arguments->out, "Folder for validation.csv, a line per figure");
+  app->add_option(
+      "--out", arguments->out,
+      "Folder for validation.csv, a line per figure, and validation.html, the same as charts");
   app->add_option("--cases", options.layouts, "Only these of s1 … s8, r1 … r8; default: all")
       ->delimiter(',');
   app->add_option("--frames", options.frames,
