@@ -49,7 +49,7 @@ class LivePage(unittest.TestCase):
         self.wait("document.getElementById('picture').naturalWidth === 1280")
         if self.browser.run("return !!window.softforceBody"):
             self.wait("document.getElementById('view').dataset.ready === 'yes'")
-            self.assertGreater(self.browser.picture("#view canvas").colours(), 100)
+            self.browser.drawn("#view canvas")
         self.assertEqual(self.browser.errors(), [])
         asked = self.browser.requests(self.run_.url)
         self.assertIn(self.run_.url + "events", asked)

@@ -117,10 +117,24 @@ class Browser:
              "actions": steps}]})
 
     def picture(self, selector):
-        """An element as it is on the screen."""
+        """An element as it is on the screen, in the middle of it."""
+        self.run(f"document.querySelector({selector!r}).scrollIntoView({{block: 'center'}})")
         number = self.element(selector)[ELEMENT]
         return Picture(base64.b64decode(
             self._call("GET", f"{self.session}/element/{number}/screenshot")))
+
+    def drawn(self, selector, seconds=20):
+        """An element once something is to be seen of it: a busy machine draws late."""
+        end = time.monotonic() + seconds
+        while True:
+            picture = self.picture(selector)
+            # Shaded surface, markers, arrows; a blank canvas has one colour.
+            if picture.colours() > 100:
+                return picture
+            if time.monotonic() > end:
+                raise RuntimeError(f"{selector} still has {picture.colours()} colours "
+                                   f"after {seconds} s")
+            time.sleep(0.2)
 
     def log(self, kind):
         """What came since the last call: of "browser" the console, of "performance" events."""

@@ -133,8 +133,8 @@ class OfAnotherProgram : public ::testing::TestWithParam<RigFormat> {
 };
 
 TEST_P(OfAnotherProgram, BecomesARigOfOursWithThePlace) {
-  const auto to = std::filesystem::path(::testing::TempDir()) / "place_converted.yaml";
   const auto from = Saved();
+  const auto to = from.parent_path() / "converted.yaml";
   WritePlacedRig(from, {Place(0.1), Spread(), ""}, to);
   EXPECT_EQ(FormatOfRig(to), RigFormat::kSoftforce);
   EXPECT_EQ(LoadRig(to).cameras[0].name, LoadRig(from).cameras[0].name);
