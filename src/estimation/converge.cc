@@ -15,6 +15,7 @@ namespace {
 // settled to 20 %.
 constexpr int kMaxScaleRounds = 4;
 constexpr double kScaleTolerance = 0.2;
+constexpr double kJump = 2;  // displacements: the body stands too near its rest to tell the scale
 
 // A body that is being moved to new loads is first brought this near their equilibrium, as a share
 // of its diagonal: enough to linearise about.
@@ -50,6 +51,21 @@ double ForceEstimator::State::LargestDisplacement(
     largest = std::max(largest, seen.at.Apply(body.state().u).norm());
   }
   return largest;
+}
+
+double ForceEstimator::State::SeenDisplacement(const std::vector<Observation>& observations) const {
+  std::vector<double> displacements;
+  for (const Observation& seen : observations) {
+    if (!IsPossible(seen)) continue;
+    displacements.push_back(
+        (seen.position - seen.offset - seen.at.Apply(solver->body().mesh.nodes)).norm());
+  }
+  if (displacements.empty()) return 0;
+  const auto at = displacements.begin() +
+                  static_cast<std::ptrdiff_t>((1 - options.max_rejected_share) *
+                                              static_cast<double>(displacements.size() - 1));
+  std::nth_element(displacements.begin(), at, displacements.end());
+  return *at;
 }
 
 std::vector<WhitenedObservation> ForceEstimator::State::WhitenAll(
@@ -247,7 +263,9 @@ ForceEstimate ForceEstimator::State::Converge(const std::vector<Observation>& ob
     return estimate;
   }
   factorised_before = body.factorisations();
-  double scale = LargestDisplacement(observations);
+  const double stood = LargestDisplacement(observations), seen = SeenDisplacement(observations);
+  const bool jump = seen > kJump * stood;
+  double scale = jump ? seen : stood;
   for (int round = 0; round < kMaxScaleRounds; ++round) {
     const int iterations = estimate.iterations;
     estimate = FitAndReject(observations, scale, told);
@@ -255,7 +273,8 @@ ForceEstimate ForceEstimator::State::Converge(const std::vector<Observation>& ob
     // The model's error goes with how far the body has moved, which only the fit tells: after a
     // jump, fit again.
     const double fitted = LargestDisplacement(observations);
-    const bool settled = std::abs(fitted - scale) <= kScaleTolerance * std::max(fitted, scale);
+    const bool settled = (round > 0 || !jump) &&
+                         std::abs(fitted - scale) <= kScaleTolerance * std::max(fitted, scale);
     scale = fitted;
     // Weighed as if the model were exact, right observations after a jump look impossible.
     const bool usable = estimate.ok() || estimate.status == Status::kInconsistent;

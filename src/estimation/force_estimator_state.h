@@ -39,6 +39,9 @@ struct ForceEstimator::State {
 
   bool IsPossible(const Observation& observation) const;
   double LargestDisplacement(const std::vector<Observation>& observations) const;  // m, now
+  // How far the points were seen from their place at rest, m: of so many the furthest that all
+  // that may be rejected do not matter.
+  double SeenDisplacement(const std::vector<Observation>& observations) const;
   std::vector<WhitenedObservation> WhitenAll(const std::vector<Observation>& observations,
                                              double displacement, ForceEstimate* estimate) const;
 

@@ -19,6 +19,7 @@ constexpr double kFollowing = 0.02;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
 constexpr double kFarthest = 0.1;           // diagonals: beyond it the linear answer leads astray
 constexpr int kMaxHalvings = 6;
+constexpr int kLoadHalvings = 1;  // within a step, which is itself halved if it fails
 // A response from where the body stood before may swing the forces to and fro: it is renewed if a
 // step is not shorter than this share of the one before.
 constexpr double kSlow = 0.5;
@@ -118,15 +119,20 @@ bool LocationEstimator::State::Explain(const std::vector<Observation>& observati
 }
 
 LocationEstimate LocationEstimator::State::Converge(const std::vector<Observation>& observations,
-                                                    const fem::Actuation& told) {
+                                                    const fem::Actuation& told,
+                                                    const fem::Equilibrium* shape) {
   LocationEstimate estimate;
   estimate.rejected.assign(observations.size(), 0);
   first_new_identity = next_identity;
-  const fem::SolveSummary reached =
-      MoveTo(NodalForces(forces), told, kNearEquilibrium * diagonal, false);
-  if (!reached.ok()) {
-    return Failed(estimate, Status::kNotConverged,
-                  "the body has no equilibrium under the actuation: " + reached.BriefReport());
+  if (shape != nullptr) {
+    state = *shape;
+  } else {
+    const fem::SolveSummary reached =
+        MoveTo(NodalForces(forces), told, kNearEquilibrium * diagonal, false);
+    if (!reached.ok()) {
+      return Failed(estimate, Status::kNotConverged,
+                    "the body has no equilibrium under the actuation: " + reached.BriefReport());
+    }
   }
   if (options.method == LocationMethod::kThreshold) {
     Eigen::Index unknowns = 0;
@@ -141,6 +147,7 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
   round.forces = forces;
   double followed_to = kNearEquilibrium * diagonal, last_move = INFINITY;
   bool reconsidered = false;  // what was rejected
+  int factorisations = 0;
   for (int i = 0; i < kMaxRounds; ++i) {
     estimate.rounds = i + 1;
     const std::vector<TrialForce> before = round.forces;
@@ -173,7 +180,11 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
     bool moved = false;
     for (int halving = 0; halving <= kMaxHalvings && !moved; ++halving, share /= 2) {
       followed_to = std::max(finest, kFollowing * share * move);
-      moved = MoveTo(start + share * change, told, followed_to, i > 0).ok();
+      const fem::SolveSummary summary =
+          MoveTo(start + share * change, told, followed_to, i > 0, kLoadHalvings);
+      moved = summary.ok();
+      factorisations += summary.factorisations;
+      if (factorisations > options.estimator.max_factorisations) break;
     }
     if (!moved) break;
   }

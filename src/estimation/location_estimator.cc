@@ -58,16 +58,22 @@ fem::SolveSummary LocationEstimator::Advance(const fem::Actuation& actuation) {
 }
 
 LocationEstimate LocationEstimator::Estimate(const std::vector<Observation>& observations,
-                                             const fem::Actuation& actuation) {
+                                             const fem::Actuation& actuation,
+                                             const fem::Equilibrium* shape) {
   State& s = *state_;
   const fem::Equilibrium before = s.state;
   const std::vector<TrialForce> forces_before = s.forces;
-  LocationEstimate estimate = s.Converge(observations, actuation);
-  if (!estimate.ok()) {
+  LocationEstimate estimate;
+  const auto converge = [&](const fem::Equilibrium* from) {
+    estimate = s.Converge(observations, actuation, from);
+    if (estimate.ok()) return;
     s.state = before;
     s.forces = forces_before;
     s.next_identity = s.first_new_identity;
-  }
+  };
+  const bool jump = shape != nullptr && s.IsJumpTo(*shape, observations);
+  if (jump) converge(shape);
+  if (!estimate.ok()) converge(nullptr);
   return estimate;
 }
 

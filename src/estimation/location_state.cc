@@ -44,10 +44,12 @@ Eigen::Matrix3Xd LocationEstimator::State::NodalForces(
 
 fem::SolveSummary LocationEstimator::State::MoveTo(const Eigen::Matrix3Xd& nodal,
                                                    const fem::Actuation& told, double tolerance,
-                                                   bool continued) {
+                                                   bool continued,
+                                                   std::optional<int> max_load_halvings) {
   fem::Equilibrium trial = state;
   const fem::LoadCase load{nodal, told};
-  fem::SolveSummary summary = solver->Approach(load, tolerance, continued, &trial);
+  fem::SolveSummary summary =
+      solver->Approach(load, tolerance, continued, &trial, max_load_halvings);
   if (summary.ok()) state = std::move(trial);
   return summary;
 }
@@ -89,6 +91,30 @@ double LocationEstimator::State::LargestDisplacement(
     largest = std::max(largest, seen.at.Apply(state.u).norm());
   }
   return largest;
+}
+
+double LocationEstimator::State::Distance(const Eigen::Matrix3Xd& u,
+                                          const std::vector<Observation>& observations) const {
+  const Eigen::Matrix3Xd& X = solver->body().mesh.nodes;
+  std::vector<double> ways;
+  for (const Observation& seen : observations) {
+    const double way = (seen.position - seen.offset - seen.at.Apply(X) - seen.at.Apply(u)).norm();
+    ways.push_back(std::isfinite(way) ? way : INFINITY);
+  }
+  if (ways.empty()) return 0;
+  const double share = 1 - options.estimator.max_rejected_share;
+  const auto at =
+      ways.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(ways.size() - 1));
+  std::nth_element(ways.begin(), at, ways.end());
+  return *at;
+}
+
+bool LocationEstimator::State::IsJumpTo(const fem::Equilibrium& shape,
+                                        const std::vector<Observation>& observations) const {
+  constexpr double kJump = 0.02;   // diagonals: further than from frame to frame
+  constexpr double kNearer = 0.5;  // of the way
+  const double way = Distance(state.u, observations);
+  return way > kJump * diagonal && Distance(shape.u, observations) < kNearer * way;
 }
 
 std::vector<WhitenedObservation> LocationEstimator::State::WhitenAll(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "estimation/location_fit.h"
@@ -17,7 +18,8 @@ struct LocationEstimator::State {
 
   // --- The body.
   fem::SolveSummary MoveTo(const Eigen::Matrix3Xd& forces, const fem::Actuation& told,
-                           double tolerance, bool continued);
+                           double tolerance, bool continued,
+                           std::optional<int> max_load_halvings = std::nullopt);
   Eigen::Matrix3Xd NodalForces(const std::vector<TrialForce>& forces) const;
 
   // --- The observations, linearised where the body stands.
@@ -31,6 +33,10 @@ struct LocationEstimator::State {
   std::vector<WhitenedObservation> WhitenAll(const std::vector<Observation>& observations,
                                              const std::vector<char>& rejected, double slack) const;
   double LargestDisplacement(const std::vector<Observation>& observations) const;  // m
+  // m, of the way from where the observed points of a shape are to where they were seen: one that
+  // no more than all that may be rejected exceed.
+  double Distance(const Eigen::Matrix3Xd& u, const std::vector<Observation>& observations) const;
+  bool IsJumpTo(const fem::Equilibrium& shape, const std::vector<Observation>& observations) const;
   // The observation that fits worst and cannot be right; −1 if there is none.
   int WorstOf(const std::vector<WhitenedObservation>& used, const LinearisedPoints& points,
               const LocationResidual& at) const;
@@ -70,8 +76,9 @@ struct LocationEstimator::State {
   struct Round;
   bool Explain(const std::vector<Observation>& observations, bool search, Round* round,
                LocationEstimate* estimate);
+  // From a shape, if there is one, else from the equilibrium under the last forces.
   LocationEstimate Converge(const std::vector<Observation>& observations,
-                            const fem::Actuation& told);
+                            const fem::Actuation& told, const fem::Equilibrium* shape);
   void Conclude(Round* round, LocationEstimate* estimate);
   // Places, forces and their covariances; false if they are not determined, with the culprit.
   bool Describe(const LinearisedPoints& points, const std::vector<TrialForce>& forces,

@@ -26,9 +26,11 @@ class ForceLocator {
     return estimator_->Advance(actuation);
   }
 
+  // `shape`: of a body that follows the markers, see LocationEstimator.
   estimation::LocationEstimate Estimate(const std::vector<estimation::Observation>& observations,
-                                        const fem::Actuation& actuation) {
-    return estimator_->Estimate(observations, actuation);
+                                        const fem::Actuation& actuation,
+                                        const fem::Equilibrium& shape) {
+    return estimator_->Estimate(observations, actuation, &shape);
   }
 
   const fem::Equilibrium& state() const { return estimator_->state(); }

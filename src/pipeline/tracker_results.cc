@@ -57,7 +57,8 @@ void Tracker::LocateForces(const fem::Actuation& actuation, FrameResult* result,
     observations.push_back(seen.seen);
     features.push_back(seen.feature);
   }
-  const estimation::LocationEstimate located = locator_->Estimate(observations, actuation);
+  const estimation::LocationEstimate located =
+      locator_->Estimate(observations, actuation, estimator_.state());
   result->status = located.status;
   result->reason = located.reason;
   result->chi2 = located.chi2;

@@ -107,8 +107,11 @@ class LocationEstimator {
   fem::SolveSummary Advance(const fem::Actuation& actuation);
 
   // Estimates under the given actuation. If the status is not kOk the state stays as it was.
+  // `shape`: an equilibrium under that actuation and other forces, about where the points were
+  // seen, if one is known: after a jump the search begins there instead of at the last shape.
   LocationEstimate Estimate(const std::vector<Observation>& observations,
-                            const fem::Actuation& actuation);
+                            const fem::Actuation& actuation,
+                            const fem::Equilibrium* shape = nullptr);
 
   const fem::Equilibrium& state() const;
   const std::vector<LocationCandidate>& candidates() const;
