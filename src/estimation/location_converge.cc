@@ -13,7 +13,8 @@ namespace softforce::estimation {
 namespace {
 
 constexpr int kMaxRounds = 25;
-constexpr int kFreeRounds = 12;  // after these the number of forces stays
+constexpr int kScreenedRounds = 2;  // afterwards the linear answer is right
+constexpr int kFreeRounds = 12;     // after these the number of forces stays
 // A step of the loads is followed to this share of the movement that it makes.
 constexpr double kFollowing = 0.02;
 constexpr double kFinestTolerance = 1e-13;  // of the diagonal: rounding
@@ -58,8 +59,15 @@ struct LocationEstimator::State::Round {
   double sd = INFINITY;  // m, the smallest of an observation's coordinates
   double slack = 0;      // m, that the linear answer may be wrong by
   bool renew = false;    // compute the response where the body stands
+  bool screen = false;   // look for wrong observations before another force is believed
   Rivals rivals;
 };
+
+bool LocationEstimator::State::Explains(const Round& round,
+                                        const std::vector<TrialForce>& from) const {
+  return from.size() == round.forces.size() &&
+         IsPlausible(round.chi2, round.points.b.size(), round.forces);
+}
 
 bool LocationEstimator::State::Explain(const std::vector<Observation>& observations, bool search,
                                        Round* round, LocationEstimate* estimate) {
@@ -78,7 +86,8 @@ bool LocationEstimator::State::Explain(const std::vector<Observation>& observati
     }
     way = std::min(way, diagonal);
     round->slack = way * way / (2 * diagonal);
-    round->used = WhitenAll(observations, estimate->rejected, round->slack);
+    const std::vector<double> slack(observations.size(), round->slack);
+    round->used = WhitenAll(observations, estimate->rejected, slack);
     if (round->used.empty()) {
       *estimate = Failed(*estimate, Status::kTooFewObservations, "no marker is seen");
       return false;
@@ -92,6 +101,15 @@ bool LocationEstimator::State::Explain(const std::vector<Observation>& observati
     round->renew = false;
     round->points = Linearise(round->used, observations);
     round->forces = from;
+    // Before what is hard to explain is taken for more forces, or for others.
+    const auto screened = [&] {
+      round->screen = false;
+      const std::vector<int> wrong = Screen(observations, estimate->rejected, from);
+      for (const int i : wrong) estimate->rejected[i] = 1;
+      rejections += static_cast<int>(wrong.size());
+      return !wrong.empty();
+    };
+    if (round->screen && from.empty() && screened()) continue;
     if (search) {
       round->forces = Search(round->points, from, &round->chi2, &round->rivals);
     } else {
@@ -103,6 +121,7 @@ bool LocationEstimator::State::Explain(const std::vector<Observation>& observati
                          "candidates or more markers");
       return false;
     }
+    if (round->screen && !Explains(*round, from) && screened()) continue;
     const int worst = WorstOf(round->used, round->points,
                               Evaluate(round->points, faces, candidates, round->forces));
     if (worst < 0) return true;
@@ -122,7 +141,7 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
                                                     const fem::Actuation& told,
                                                     const fem::Equilibrium* shape) {
   LocationEstimate estimate;
-  estimate.rejected.assign(observations.size(), 0);
+  for (const Observation& seen : observations) estimate.rejected.push_back(!IsPossible(seen));
   first_new_identity = next_identity;
   if (shape != nullptr) {
     state = *shape;
@@ -151,8 +170,9 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
   for (int i = 0; i < kMaxRounds; ++i) {
     estimate.rounds = i + 1;
     const std::vector<TrialForce> before = round.forces;
+    round.screen = i < kScreenedRounds && options.method != LocationMethod::kThreshold;
     if (!Explain(observations, i < kFreeRounds, &round, &estimate)) return estimate;
-    Identify(before, &round.forces);
+    Identify(before, {}, &round.forces);
     const Eigen::Matrix3Xd change = NodalForces(round.forces) - state.load.forces;
     const Eigen::VectorXd moves_by = response.transpose() * change.reshaped();
     const double move = moves_by.size() > 0
@@ -163,14 +183,17 @@ LocationEstimate LocationEstimator::State::Converge(const std::vector<Observatio
     // `finest` differs a little from round to round.
     const bool settled = move <= finest && followed_to <= 1.01 * finest;
     if (i > 0 && SameStructure(before, round.forces) && settled) {
-      const auto first = std::find(estimate.rejected.begin(), estimate.rejected.end(), char{1});
-      if (reconsidered || first == estimate.rejected.end()) {
+      // What seemed impossible far from the answer may be possible here.
+      const std::vector<int> explained =
+          reconsidered ? std::vector<int>{}
+                       : Explained(observations, estimate.rejected, round.slack, round.forces);
+      if (explained.empty()) {
+        RefreshResponse(round.used);
         Conclude(&round, &estimate);
         return estimate;
       }
-      // What seemed impossible far from the answer may be possible here.
       reconsidered = true;
-      std::fill(first, estimate.rejected.end(), char{0});
+      for (const int o : explained) estimate.rejected[o] = 0;
       continue;
     }
     round.renew = i > 1 && move > kSlow * last_move && move > finest;
@@ -296,7 +319,7 @@ void LocationEstimator::State::FindAlternatives(const Round& round,
 void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate) {
   Round& round = *last;
   next_identity = first_new_identity;  // those that came and went on the way leave no gap
-  Identify(forces, &round.forces);
+  Identify(forces, gone, &round.forces);
   std::string culprit;
   if (!Describe(round.points, round.forces, &estimate->forces, &culprit)) {
     *estimate = Failed(*estimate, Status::kUnobservable,
@@ -312,7 +335,7 @@ void LocationEstimator::State::Conclude(Round* last, LocationEstimate* estimate)
   for (const TrialForce& trial : round.forces) {
     estimate->degrees_of_freedom -= static_cast<int>(trial.intensity.size()) + (moves() ? 2 : 0);
   }
-  forces = round.forces;
+  Remember(round.forces);
 }
 
 }  // namespace softforce::estimation

@@ -99,7 +99,8 @@ std::vector<LocatedForce> LocationEstimator::Floor(const std::vector<Observation
   const EstimatorOptions allowed = s.options.estimator;
   s.options.estimator.common_model_error = s.options.estimator.local_model_error = 0;
   const std::vector<char> none(observations.size(), 0);
-  const std::vector<WhitenedObservation> used = s.WhitenAll(observations, none, 0);
+  const std::vector<WhitenedObservation> used =
+      s.WhitenAll(observations, none, std::vector<double>(observations.size(), 0));
   const bool ready = s.RefreshResponse(used);
   LinearisedPoints points;
   if (ready) points = s.Linearise(used, observations);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "estimation/location_state.h"
 #include "softforce/geometry/chi_square.h"
@@ -65,6 +66,16 @@ std::vector<TrialForce> LocationEstimator::State::Likeliest(const LinearisedPoin
   return ForcesOf(best);
 }
 
+bool LocationEstimator::State::IsPlausible(double chi2, Eigen::Index rows,
+                                           const std::vector<TrialForce>& trials) const {
+  int unknowns = 0;
+  for (const TrialForce& trial : trials) {
+    unknowns += static_cast<int>(trial.intensity.size()) + (moves() ? 2 : 0);
+  }
+  const int freedom = std::max(1, static_cast<int>(rows) - unknowns);
+  return chi2 <= geometry::ChiSquareQuantile(1 - kImprobable, freedom);
+}
+
 double LocationEstimator::State::Refine(const LinearisedPoints& points,
                                         std::vector<TrialForce>* trials) const {
   return moves() ? FitLocations(points, faces, candidates, trials)
@@ -104,11 +115,9 @@ bool LocationEstimator::State::Prune(const LinearisedPoints& points,
   return true;
 }
 
-bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<TrialForce>* trials,
-                                    double* chi2, Rivals* rivals) const {
-  if (static_cast<int>(trials->size()) >= options.max_forces) return false;
-  // What a force at each candidate would explain, those at hand giving way.
-  const LocationResidual at = Evaluate(points, faces, candidates, *trials);
+std::vector<std::pair<double, int>> LocationEstimator::State::Starts(
+    const LinearisedPoints& points, const std::vector<TrialForce>& trials) const {
+  const LocationResidual at = Evaluate(points, faces, candidates, trials);
   GroupedProblem problem = AtCandidates(points);
   problem.b = -at.residual;
   const int n = static_cast<int>(candidates.size());
@@ -119,7 +128,7 @@ bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<
     problem.push.push_back(false);
   }
   const SubsetSearch search(problem);
-  std::vector<std::pair<double, int>> starts;  // χ², candidate
+  std::vector<std::pair<double, int>> starts;
   for (int c = 0; c < n; ++c) {
     std::vector<int> groups{c};
     groups.insert(groups.end(), present.begin(), present.end());
@@ -128,33 +137,48 @@ bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<
   }
   std::sort(starts.begin(), starts.end());
   if (starts.size() > kTriedStarts) starts.resize(kTriedStarts);
-  const double before = Total(*chi2, *trials);
-  double least = before, nearest = INFINITY;
+  return starts;
+}
+
+std::vector<TrialForce> LocationEstimator::State::Another(const LinearisedPoints& points,
+                                                          const std::vector<TrialForce>& trials,
+                                                          double* chi2, double* nearest) const {
+  *nearest = INFINITY;
+  if (static_cast<int>(trials.size()) >= options.max_forces) return {};
+  double least = Total(*chi2, trials);
   std::vector<TrialForce> best;
-  for (const auto& [there, c] : starts) {
+  for (const auto& [there, c] : Starts(points, trials)) {
     TrialForce added;
     added.candidate = c;
     added.at = candidates[c].at;
     added.intensity = Eigen::VectorXd::Zero(candidate_patches[c].directions.cols());
-    std::vector<TrialForce> grown = *trials;
+    std::vector<TrialForce> grown = trials;
     grown.push_back(added);
-    nearest = std::min(nearest, Total(there, grown));
+    *nearest = std::min(*nearest, Total(there, grown));
     // Moving may help, but hardly more than to halve what a fixed place leaves over the price.
     if (!(there + 0.5 * Price(added) < *chi2)) continue;
     if (!std::isfinite(FitIntensities(points, faces, candidates, &grown))) continue;
     const double chi2_grown = Refine(points, &grown);
     const double total = Total(chi2_grown, grown);
-    nearest = std::min(nearest, total);
+    *nearest = std::min(*nearest, total);
     if (!(total < least)) continue;
     least = total;
     best = grown;
     *chi2 = chi2_grown;
   }
-  if (best.empty()) {
+  return best;
+}
+
+bool LocationEstimator::State::Grow(const LinearisedPoints& points, std::vector<TrialForce>* trials,
+                                    double* chi2, Rivals* rivals) const {
+  const double before = Total(*chi2, *trials);
+  double nearest = INFINITY;
+  std::vector<TrialForce> grown = Another(points, *trials, chi2, &nearest);
+  if (grown.empty()) {
     rivals->odds += Odds(nearest, before);
     return false;
   }
-  *trials = best;
+  *trials = std::move(grown);
   return true;
 }
 
@@ -278,11 +302,7 @@ std::vector<TrialForce> LocationEstimator::State::Search(const LinearisedPoints&
   if (options.method == LocationMethod::kThreshold) return Survivors(points, chi2);
   if (options.method == LocationMethod::kCandidates) return Likeliest(points, chi2);
   const std::vector<TrialForce> best = SearchFrom(points, from, chi2, rivals);
-  int unknowns = 0;
-  for (const TrialForce& trial : best) unknowns += static_cast<int>(trial.intensity.size()) + 2;
-  const int freedom = std::max(1, static_cast<int>(points.b.size()) - unknowns);
-  const bool plausible = *chi2 <= geometry::ChiSquareQuantile(1 - kImprobable, freedom);
-  if (!from.empty() && plausible) return best;
+  if (!from.empty() && IsPlausible(*chi2, points.b.size(), best)) return best;
   double chi2_anew = INFINITY;
   Rivals rivals_anew;
   const std::vector<TrialForce> anew =
@@ -297,35 +317,6 @@ std::vector<TrialForce> LocationEstimator::State::Search(const LinearisedPoints&
   *rivals = rivals_anew;
   if (!same) rivals->odds += Odds(cost, cost_anew);
   return anew;
-}
-
-void LocationEstimator::State::Identify(const std::vector<TrialForce>& before,
-                                        std::vector<TrialForce>* trials) {
-  constexpr double kFarthest = 0.2;  // diagonals: one that jumps further is another force
-  struct Pair {
-    double apart;  // m
-    size_t old, trial;
-    bool operator<(const Pair& other) const { return apart < other.apart; }
-  };
-  std::vector<Pair> pairs;
-  for (size_t i = 0; i < before.size(); ++i) {
-    for (size_t j = 0; j < trials->size(); ++j) {
-      const double apart =
-          (faces.walk().Position(before[i].at) - faces.walk().Position((*trials)[j].at)).norm();
-      if (apart <= kFarthest * diagonal) pairs.push_back({apart, i, j});
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  for (TrialForce& trial : *trials) trial.identity = -1;
-  std::set<int> taken;
-  for (const Pair& pair : pairs) {
-    TrialForce& trial = (*trials)[pair.trial];
-    if (trial.identity >= 0 || !taken.insert(before[pair.old].identity).second) continue;
-    trial.identity = before[pair.old].identity;
-  }
-  for (TrialForce& trial : *trials) {
-    if (trial.identity < 0) trial.identity = next_identity++;
-  }
 }
 
 }  // namespace softforce::estimation

@@ -54,17 +54,36 @@ fem::SolveSummary LocationEstimator::State::MoveTo(const Eigen::Matrix3Xd& nodal
   return summary;
 }
 
-bool LocationEstimator::State::RefreshResponse(const std::vector<WhitenedObservation>& used,
-                                               bool renew) {
-  const double max_staleness = renew ? 0 : options.estimator.max_staleness;
+bool LocationEstimator::State::SelectResponse(const std::vector<WhitenedObservation>& used) {
   const auto same = [](const WhitenedObservation& seen, const mesh::NodalWeights& point) {
     return seen.observation->at.nodes == point.nodes &&
            seen.observation->at.weights == point.weights;
   };
-  const bool fresh = response_u.cols() == state.u.cols() && used.size() == response_points.size() &&
-                     std::equal(used.begin(), used.end(), response_points.begin(), same) &&
-                     (state.u - response_u).colwise().norm().maxCoeff() <= max_staleness;
-  if (fresh) return true;
+  if (used.size() == response_points.size() &&
+      std::equal(used.begin(), used.end(), response_points.begin(), same)) {
+    return true;
+  }
+  Eigen::MatrixXd selected(all_response.rows(), 3 * static_cast<Eigen::Index>(used.size()));
+  std::vector<mesh::NodalWeights> points;
+  for (const WhitenedObservation& seen : used) {
+    const auto at = std::find_if(all_response_points.begin(), all_response_points.end(),
+                                 [&](const auto& point) { return same(seen, point); });
+    if (at == all_response_points.end()) return false;
+    selected.middleCols<3>(3 * static_cast<Eigen::Index>(points.size())) =
+        all_response.middleCols<3>(3 * (at - all_response_points.begin()));
+    points.push_back(*at);
+  }
+  response = std::move(selected);
+  response_points = std::move(points);
+  return true;
+}
+
+bool LocationEstimator::State::RefreshResponse(const std::vector<WhitenedObservation>& used,
+                                               bool renew) {
+  const double max_staleness = renew ? 0 : options.estimator.max_staleness;
+  const bool near = response_u.cols() == state.u.cols() &&
+                    (state.u - response_u).colwise().norm().maxCoeff() <= max_staleness;
+  if (near && SelectResponse(used)) return true;
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(state.u.size(), 3 * static_cast<int>(used.size()));
   response_points.clear();
   for (size_t i = 0; i < used.size(); ++i) {
@@ -79,7 +98,8 @@ bool LocationEstimator::State::RefreshResponse(const std::vector<WhitenedObserva
   fem::Sensitivity sensitivity = solver->Solve(state, unit, max_staleness);
   response_u.resize(3, 0);
   if (!sensitivity.ok) return false;
-  response = std::move(sensitivity.du);
+  response = all_response = std::move(sensitivity.du);
+  all_response_points = response_points;
   response_u = state.u;
   return true;
 }
@@ -117,20 +137,23 @@ bool LocationEstimator::State::IsJumpTo(const fem::Equilibrium& shape,
   return way > kJump * diagonal && Distance(shape.u, observations) < kNearer * way;
 }
 
+bool LocationEstimator::State::IsPossible(const Observation& seen) const {
+  return seen.position.allFinite() && seen.whitening.allFinite() && !seen.whitening.isZero(0) &&
+         seen.offset.allFinite() &&
+         (seen.position - seen.at.Apply(solver->body().mesh.nodes)).norm() <
+             kAbsurdDistance * diagonal;
+}
+
 std::vector<WhitenedObservation> LocationEstimator::State::WhitenAll(
     const std::vector<Observation>& observations, const std::vector<char>& rejected,
-    double slack) const {
+    const std::vector<double>& slack) const {
   const std::vector<int> companions = CountCompanions(observations);
   const double local = options.estimator.local_model_error * LargestDisplacement(observations);
-  const Eigen::Matrix3Xd& X = solver->body().mesh.nodes;
   std::vector<WhitenedObservation> used;
   for (int i = 0; i < static_cast<int>(observations.size()); ++i) {
     const Observation& seen = observations[i];
-    const bool possible = seen.position.allFinite() && seen.whitening.allFinite() &&
-                          !seen.whitening.isZero(0) && seen.offset.allFinite() &&
-                          (seen.position - seen.at.Apply(X)).norm() < kAbsurdDistance * diagonal;
-    if (rejected[i] || !possible) continue;
-    used.push_back(Whiten(seen, i, std::hypot(local, slack), companions[i]));
+    if (rejected[i] || !IsPossible(seen)) continue;
+    used.push_back(Whiten(seen, i, std::hypot(local, slack[i]), companions[i]));
   }
   return used;
 }
@@ -180,9 +203,9 @@ LinearisedPoints LocationEstimator::State::Linearise(
 
 // An observation is impossible if it is far from where all others and the forces have it: its
 // misfit is compared with its variance when it is left out.
-int LocationEstimator::State::WorstOf(const std::vector<WhitenedObservation>& used,
-                                      const LinearisedPoints& points,
-                                      const LocationResidual& at) const {
+std::vector<double> LocationEstimator::State::Excesses(const std::vector<WhitenedObservation>& used,
+                                                       const LinearisedPoints& points,
+                                                       const LocationResidual& at) const {
   Eigen::Index columns = 0;
   for (const Eigen::MatrixXd& J : at.J) columns += J.cols();
   const Eigen::Index rows = points.b.size();
@@ -199,8 +222,7 @@ int LocationEstimator::State::WorstOf(const std::vector<WhitenedObservation>& us
         Eigen::MatrixXd(qr.householderQ()).leftCols(std::min(qr.rank(), columns));
     projected -= Q * Q.transpose();
   }
-  int worst = -1;
-  double worst_excess = 1;
+  std::vector<double> excesses;
   for (size_t i = 0; i < used.size(); ++i) {
     const Eigen::MatrixXd own = points.whitening.middleCols<3>(3 * static_cast<Eigen::Index>(i)) *
                                 used[i].whitening.completeOrthogonalDecomposition().pseudoInverse();
@@ -208,13 +230,23 @@ int LocationEstimator::State::WorstOf(const std::vector<WhitenedObservation>& us
     const Eigen::VectorXd pull = own.transpose() * (projected * at.residual);
     const Eigen::LDLT<Eigen::MatrixXd> factor(information);
     const double chi2 = pull.dot(factor.solve(pull));
-    const double excess =
-        chi2 / geometry::ChiSquareQuantile(1 - options.estimator.rejection_probability,
-                                           static_cast<int>(own.cols()));
-    if (excess > worst_excess) {
-      worst_excess = excess;
-      worst = static_cast<int>(i);
-    }
+    excesses.push_back(chi2 /
+                       geometry::ChiSquareQuantile(1 - options.estimator.rejection_probability,
+                                                   static_cast<int>(own.cols())));
+  }
+  return excesses;
+}
+
+int LocationEstimator::State::WorstOf(const std::vector<WhitenedObservation>& used,
+                                      const LinearisedPoints& points,
+                                      const LocationResidual& at) const {
+  const std::vector<double> excesses = Excesses(used, points, at);
+  int worst = -1;
+  double worst_excess = 1;
+  for (size_t i = 0; i < excesses.size(); ++i) {
+    if (!(excesses[i] > worst_excess)) continue;
+    worst_excess = excesses[i];
+    worst = static_cast<int>(i);
   }
   return worst;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "estimation/location_fit.h"
@@ -10,6 +11,13 @@
 #include "softforce/estimation/location_estimator.h"
 
 namespace softforce::estimation {
+
+// A force that acted a few usable frames ago, and may come back.
+struct GoneForce {
+  int identity;
+  Eigen::Vector3d rest;  // m, where it was on the body at rest
+  int frames;            // usable ones since
+};
 
 // What a LocationEstimator holds.
 struct LocationEstimator::State {
@@ -27,19 +35,36 @@ struct LocationEstimator::State {
   // the same points and about the same shape; `renew`: exactly the same. False if the body is about
   // to buckle.
   bool RefreshResponse(const std::vector<WhitenedObservation>& used, bool renew = false);
+  // Takes it from that of more points; false if one of them is not among these.
+  bool SelectResponse(const std::vector<WhitenedObservation>& used);
   LinearisedPoints Linearise(const std::vector<WhitenedObservation>& used,
                              const std::vector<Observation>& observations) const;
-  // `slack` (m): what the linear answer may be wrong by, in each coordinate.
+  // `slack` (m): what the linear answer may be wrong by in each coordinate, per observation; one
+  // with an infinite slack stays among them and has no weight.
   std::vector<WhitenedObservation> WhitenAll(const std::vector<Observation>& observations,
-                                             const std::vector<char>& rejected, double slack) const;
+                                             const std::vector<char>& rejected,
+                                             const std::vector<double>& slack) const;
+  bool IsPossible(const Observation& observation) const;  // finite, and not absurdly far
   double LargestDisplacement(const std::vector<Observation>& observations) const;  // m
   // m, of the way from where the observed points of a shape are to where they were seen: one that
   // no more than all that may be rejected exceed.
   double Distance(const Eigen::Matrix3Xd& u, const std::vector<Observation>& observations) const;
   bool IsJumpTo(const fem::Equilibrium& shape, const std::vector<Observation>& observations) const;
+  // By how much χ² would fall if one were left out, the forces giving way, as a share of the most
+  // that it may be for a right observation.
+  std::vector<double> Excesses(const std::vector<WhitenedObservation>& used,
+                               const LinearisedPoints& points, const LocationResidual& at) const;
   // The observation that fits worst and cannot be right; −1 if there is none.
   int WorstOf(const std::vector<WhitenedObservation>& used, const LinearisedPoints& points,
               const LocationResidual& at) const;
+  // Which observations another force should not be believed for, from forces at hand: see
+  // location_screen.cc. Indices among the caller's.
+  std::vector<int> Screen(const std::vector<Observation>& observations,
+                          const std::vector<char>& rejected, std::vector<TrialForce> trials) const;
+  // Those of the rejected ones that forces found without them explain.
+  std::vector<int> Explained(const std::vector<Observation>& observations,
+                             const std::vector<char>& rejected, double slack,
+                             const std::vector<TrialForce>& trials);
 
   // --- How many forces, and where.
   // What speaks for other answers than the one at hand.
@@ -61,6 +86,15 @@ struct LocationEstimator::State {
                                      double* chi2, Rivals* rivals) const;
   bool SameAnswer(const std::vector<TrialForce>& a, const std::vector<TrialForce>& b) const;
   double Refine(const LinearisedPoints& points, std::vector<TrialForce>* forces) const;
+  bool IsPlausible(double chi2, Eigen::Index rows, const std::vector<TrialForce>& forces) const;
+  // χ² with a force at each candidate besides, those at hand giving way: the best few first.
+  std::vector<std::pair<double, int>> Starts(const LinearisedPoints& points,
+                                             const std::vector<TrialForce>& forces) const;
+  // One more force, near the candidate at which it explains most; empty if none makes them
+  // likelier, `nearest` then saying what the likeliest costs.
+  std::vector<TrialForce> Another(const LinearisedPoints& points,
+                                  const std::vector<TrialForce>& forces, double* chi2,
+                                  double* nearest) const;
   // Each makes the forces likelier by one kind of change if it can; if not, it adds to the rivals.
   bool Prune(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
              Rivals* rivals) const;
@@ -69,11 +103,17 @@ struct LocationEstimator::State {
   bool ChangeFace(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
                   Rivals* rivals) const;
   std::vector<TrialForce> Survivors(const LinearisedPoints& points, double* chi2) const;
-  // Gives them the identities of those of `before` that are nearest, new ones to the others.
-  void Identify(const std::vector<TrialForce>& before, std::vector<TrialForce>* forces);
+  // Gives them the identities of those of `before` that are nearest, then of those that have
+  // vanished, new ones to the others.
+  void Identify(const std::vector<TrialForce>& before, const std::vector<GoneForce>& vanished,
+                std::vector<TrialForce>* forces);
+  // They are the last ones from now on; those that are no more have gone.
+  void Remember(const std::vector<TrialForce>& now);
 
   // The likeliest forces for given observations, after those are rejected that they cannot explain.
   struct Round;
+  // Whether what is seen asks for no other forces than those there were.
+  bool Explains(const Round& round, const std::vector<TrialForce>& from) const;
   bool Explain(const std::vector<Observation>& observations, bool search, Round* round,
                LocationEstimate* estimate);
   // From a shape, if there is one, else from the equilibrium under the last forces.
@@ -100,11 +140,13 @@ struct LocationEstimator::State {
 
   fem::Equilibrium state;
   std::vector<TrialForce> forces;  // of the last usable estimate
+  std::vector<GoneForce> gone;
   int next_identity = 0;
   int first_new_identity = 0;  // of the frame at hand
 
-  Eigen::MatrixXd response;  // 3N×3m, see LinearisedPoints
-  std::vector<mesh::NodalWeights> response_points;
+  Eigen::MatrixXd response;      // 3N×3m, see LinearisedPoints
+  Eigen::MatrixXd all_response;  // the same for points that may have been rejected since
+  std::vector<mesh::NodalWeights> response_points, all_response_points;
   Eigen::Matrix3Xd response_u;
 };
 

@@ -114,6 +114,39 @@ TEST_F(LocationEstimatorTest, FindsThreeForces) {
   for (const Press& press : presses) ExpectFound(press, estimate);
 }
 
+// The first frame has the whole load: the sheet of 100 mm is bent by 15 mm.
+TEST_F(LocationEstimatorTest, FindsForcesOnABodyThatIsFullyLoadedFromTheStart) {
+  const std::vector<Press> one{{{0.037, 0.061, 0}, {0, 0, 2}}};
+  const std::vector<Press> two{{{0.037, 0.061, 0}, {0, 0, 1.5}}, {{0.07, 0.03, 0}, {0, 0, -1.2}}};
+  for (const std::vector<Press>& presses : {one, two}) {
+    LocationEstimator cold = sheet_.Estimator(PressedSheet::Options());
+    LocationEstimator warm = sheet_.Estimator(PressedSheet::Options());
+    const std::vector<Observation> observations =
+        sheet_.Observe(truth_.Seen(presses), kNoise, &random_);
+    const fem::Actuation none = fem::NoActuation(sheet_.body());
+
+    const LocationEstimate at_once = cold.Estimate(observations, none);
+    for (const double share : {0.0, 0.25, 0.5, 0.75}) {
+      std::vector<Press> part = presses;
+      for (Press& press : part) press.force *= share;
+      ASSERT_TRUE(Estimate(&warm, part).ok()) << share;
+    }
+    const LocationEstimate step_by_step = warm.Estimate(observations, none);
+
+    ASSERT_TRUE(at_once.ok()) << at_once.reason;
+    EXPECT_LE(at_once.rounds, 12);
+    ASSERT_EQ(at_once.forces.size(), presses.size());
+    ASSERT_EQ(step_by_step.forces.size(), presses.size());
+    for (const Press& press : presses) ExpectFound(press, at_once);
+    for (const LocatedForce& force : step_by_step.forces) {
+      const LocatedForce& same = NearestTo(force.rest, at_once);
+      const Eigen::Vector3d apart = same.force - force.force;
+      EXPECT_LT(apart.dot(force.covariance.ldlt().solve(apart)), 1);  // sd
+      EXPECT_LT((same.rest - force.rest).norm(), force.location_sd());
+    }
+  }
+}
+
 TEST_F(LocationEstimatorTest, FindsNoForceWhereThereIsNone) {
   LocationEstimator estimator = sheet_.Estimator(PressedSheet::Options());
 
@@ -150,6 +183,25 @@ TEST_F(LocationEstimatorTest, AForceThatComesAndGoesLeavesTheOther) {
   ASSERT_EQ(after.forces.size(), 1);
   EXPECT_EQ(after.forces[0].identity, before.forces[0].identity);
   ExpectFound(comes, both);
+}
+
+// As one that is too weak for a while, or a contact that bounces.
+TEST_F(LocationEstimatorTest, AForceThatIsGoneForAFewFramesComesBackAsTheSame) {
+  LocationEstimator estimator = sheet_.Estimator(PressedSheet::Options());
+  const Press stays{{0.03, 0.03, 0}, {0, 0, 0.4}}, bounces{{0.07, 0.07, 0}, {0, 0, 0.4}};
+  const Press elsewhere{{0.07, 0.03, 0}, {0, 0, 0.4}};
+  const auto identity_of = [&](const Press& press, const std::vector<Press>& presses) {
+    const LocationEstimate estimate = Estimate(&estimator, presses);
+    EXPECT_EQ(estimate.forces.size(), presses.size());
+    return NearestTo(press.place, estimate).identity;
+  };
+
+  const int first = identity_of(bounces, {stays, bounces});
+  const int other = identity_of(stays, {stays});
+  EXPECT_NE(identity_of(elsewhere, {stays, elsewhere}), first) << "40 mm from where it was";
+  EXPECT_EQ(identity_of(bounces, {stays, bounces}), first);
+  for (int frame = 0; frame < 16; ++frame) EXPECT_EQ(identity_of(stays, {stays}), other);
+  EXPECT_NE(identity_of(bounces, {stays, bounces}), first) << "after half a second at 30 Hz";
 }
 
 TEST_F(LocationEstimatorTest, TellsWhichCandidatesAreLoaded) {
@@ -211,6 +263,38 @@ TEST_F(LocationEstimatorTest, AnImpossibleMarkerIsRejectedAndHasNoInfluence) {
   // Both converge until nothing moves by more than a twentieth of a standard deviation.
   EXPECT_LT((poisoned.forces[0].rest - clean.forces[0].rest).norm(),
             0.1 * clean.forces[0].location_sd());
+}
+
+// Far enough for no force to be looked for, and near enough for two opposite ones to explain it.
+TEST_F(LocationEstimatorTest, PoisonDoesNotChangeTheAnswer) {
+  const std::vector<Press> presses{{{0.037, 0.061, 0}, {0, 0, 0.8}},
+                                   {{0.07, 0.041, 0}, {0, 0, -0.6}}};
+  const std::vector<Observation> clean = sheet_.Observe(truth_.Seen(presses), kNoise, &random_);
+  const fem::Actuation none = fem::NoActuation(sheet_.body());
+  std::vector<Observation> without = clean;
+  without.erase(without.begin() + 6);
+  LocationEstimator reference_of = sheet_.Estimator(PressedSheet::Options());
+  const LocationEstimate reference = reference_of.Estimate(without, none);
+  ASSERT_EQ(reference.forces.size(), 2);
+  for (const double poison : {0.003, 0.01, 0.04, 0.15, 1e6}) {
+    std::vector<Observation> observations = clean;
+    observations[6].position += Eigen::Vector3d(0.3, 0.1, 1) * poison;
+    LocationEstimator estimator = sheet_.Estimator(PressedSheet::Options());
+
+    const LocationEstimate estimate = estimator.Estimate(observations, none);
+
+    ASSERT_TRUE(estimate.ok()) << poison << " m: " << estimate.reason;
+    EXPECT_EQ(std::count(estimate.rejected.begin(), estimate.rejected.end(), char{1}), 1) << poison;
+    EXPECT_EQ(estimate.rejected[6], 1) << poison;
+    EXPECT_LE(estimate.rounds, reference.rounds + 2) << poison;
+    ASSERT_EQ(estimate.forces.size(), 2) << poison;
+    for (const LocatedForce& force : reference.forces) {
+      // Each converges until nothing moves by more than a tenth of a standard deviation.
+      EXPECT_LT((NearestTo(force.rest, estimate).rest - force.rest).norm(),
+                0.2 * force.location_sd())
+          << poison;
+    }
+  }
 }
 
 TEST_F(LocationEstimatorTest, WithoutMarkersItSaysSoAndRecovers) {
