@@ -9,6 +9,7 @@
 
 #include "render/brush.h"
 #include "render/palette.h"
+#include "render/region.h"
 #include "render/text.h"
 
 namespace softforce::render {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr double kFullHeight = 150;  // px, of a strip in which letters have size 1
 constexpr double kLeastText = 0.9;
-constexpr double kBand = 1.96;  // standard deviations on either side: 95 %
 const cv::Vec3b kGround(32, 32, 32), kGrid(80, 80, 80), kWords(200, 200, 200);
 const std::array<cv::Vec3b, 6> kColours{kOrange, kSkyBlue, kGreen, kYellow, kPurple, kVermillion};
 
@@ -35,7 +35,7 @@ double LargestShown(const std::vector<ChartSeries>& series, double from_s) {
   double largest = 0;
   for (const ChartSeries& one : series) {
     for (size_t i = 0; i < one.value.size(); ++i) {
-      const double upper = one.value[i] + kBand * one.sd[i];
+      const double upper = one.value[i] + kHalfWidth * one.sd[i];
       if (one.time_s[i] >= from_s && upper > largest) largest = upper;
     }
   }
@@ -77,7 +77,7 @@ void DrawSeries(Brush* brush, const Axes& axes, const ChartSeries& one, const cv
   for (size_t i = 0; i + 1 < n; ++i) {
     if (!known(i) || !known(i + 1) || !std::isfinite(one.sd[i] + one.sd[i + 1])) continue;
     const auto edge = [&](size_t k, double side) {
-      return axes.At(one.time_s[k], one.value[k] + side * kBand * one.sd[k]);
+      return axes.At(one.time_s[k], one.value[k] + side * kHalfWidth * one.sd[k]);
     };
     brush->Polygon({edge(i, 1), edge(i + 1, 1), edge(i + 1, -1), edge(i, -1)});
   }

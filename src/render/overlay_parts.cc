@@ -35,7 +35,7 @@ void Occupy(Drawing* drawing, const std::vector<cv::Point2d>& line, double radiu
 std::string ForceText(const OverlayForce& force) {
   std::string text = fmt::format("{} {:.3f} N", force.label, force.force.norm());
   if (std::isfinite(force.sd_norm) && force.sd_norm > 0) {
-    text += fmt::format(" ±{:.3f}", force.sd_norm);
+    text += fmt::format(" ±{:.3f}", kHalfWidth * force.sd_norm);
   }
   return text;
 }

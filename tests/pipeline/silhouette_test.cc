@@ -78,8 +78,31 @@ double Crossing(const cv::Mat1f& picture, const cv::Point2d& at, const cv::Point
   return found;
 }
 
-// From the model's outline to that in the picture, px, outwards.
-std::vector<double> Distances(const cv::Mat1f& cover, const cv::Mat1f& picture) {
+// Where the outline cannot be told from a fiducial beside it.
+cv::Mat1b BesideFiducials(const scene::Scene& scene, const camera::Camera& camera,
+                          const Eigen::Isometry3d& T_rig_robot, cv::Size size) {
+  constexpr double kWithBorder = 1.5;  // widths of the code; the white border is a quarter wide
+  cv::Mat1b beside(size, 0);
+  for (const calibration::Fiducial& fiducial : scene.cameras.fiducials) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& corner : fiducial.corners) centre += corner / 4;
+    std::vector<cv::Point> quad;
+    for (const Eigen::Vector3d& corner : fiducial.corners) {
+      const Eigen::Vector3d outer = centre + kWithBorder * (corner - centre);
+      const Eigen::Vector2d p =
+          camera::Project(camera.lens, camera.T_camera_rig * T_rig_robot * outer).pixel;
+      quad.emplace_back(cvRound(p.x()), cvRound(p.y()));
+    }
+    cv::fillConvexPoly(beside, quad, 255);
+  }
+  const int width = 2 * static_cast<int>(kReach) + 1;
+  cv::dilate(beside, beside, cv::getStructuringElement(cv::MORPH_ELLIPSE, {width, width}));
+  return beside;
+}
+
+// From the model's outline to that in the picture, px, outwards, but for places in `unclear`.
+std::vector<double> Distances(const cv::Mat1f& cover, const cv::Mat1f& picture,
+                              const cv::Mat1b& unclear) {
   cv::Mat mask = cover > 0.5;
   std::vector<std::vector<cv::Point>> outlines;
   cv::findContours(mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
@@ -91,7 +114,8 @@ std::vector<double> Distances(const cv::Mat1f& cover, const cv::Mat1f& picture) 
     for (size_t i = 0; i < outline.size(); i += 4) {
       const cv::Point p = outline[i];
       const int margin = static_cast<int>(kReach) + 2;
-      if (!cv::Rect(margin, margin, cover.cols - 2 * margin, cover.rows - 2 * margin).contains(p)) {
+      if (!cv::Rect(margin, margin, cover.cols - 2 * margin, cover.rows - 2 * margin).contains(p) ||
+          unclear(p) > 0) {
         continue;
       }
       cv::Point2d normal(smooth(p.y, p.x - 1) - smooth(p.y, p.x + 1),
@@ -132,7 +156,8 @@ std::vector<double> OutlineErrors(const std::string& recording, const std::strin
       grey.convertTo(grey, CV_32F);
       const cv::Mat1f cover =
           Cover(world, world.mesh().nodes + frame->u, camera, frame->T_rig_robot, grey.size());
-      for (const double d : Distances(cover, grey)) errors.push_back(std::abs(d));
+      const cv::Mat1b unclear = BesideFiducials(scene, camera, frame->T_rig_robot, grey.size());
+      for (const double d : Distances(cover, grey, unclear)) errors.push_back(std::abs(d));
     }
   }
   std::sort(errors.begin(), errors.end());
@@ -146,9 +171,11 @@ void ExpectWithinAPixel(const std::string& recording, const std::string& test) {
   const auto quantile = [&](double share) {
     return errors[static_cast<size_t>(share * static_cast<double>(errors.size() - 1))];
   };
-  std::cout << fmt::format("{} places: median {:.2f} px, 95 % within {:.2f}, 99 % within {:.2f}\n",
-                           errors.size(), quantile(0.5), quantile(0.95), quantile(0.99));
-  EXPECT_LT(quantile(0.95), 1.0);  // px
+  std::cout << fmt::format(
+      "{} places: median {:.2f} px, 95 % within {:.2f}, 99 % within {:.2f}, all within {:.2f}\n",
+      errors.size(), quantile(0.5), quantile(0.95), quantile(0.99), errors.back());
+  EXPECT_LT(quantile(0.99), 1.0);  // px
+  EXPECT_LT(errors.back(), 1.1);
 }
 
 TEST(Silhouette, OfTheSheetIsWhereThePictureHasIt) {
