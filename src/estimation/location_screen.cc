@@ -18,68 +18,90 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-// Two opposite forces beside a marker explain any place of it, so a search that trusts all markers
-// finds them. Here each step is the cheaper one of two: another force, or an observation left out.
 // Where the linear answer is wrong by the square of the way, each observation is given the error of
 // its own way: one that is far off explains nothing by itself.
+LocationEstimator::State::Ways LocationEstimator::State::WaysLeft(
+    const std::vector<Observation>& observations, const std::vector<char>& rejected) const {
+  const Eigen::Matrix3Xd& X = solver->body().mesh.nodes;
+  const size_t n = observations.size();
+  const std::vector<double> none(n, 0);
+  Ways ways{none, none, none, Distance(state.u, observations)};
+  for (const WhitenedObservation& seen : WhitenAll(observations, rejected, none)) {
+    const Observation& o = *seen.observation;
+    const Eigen::Vector3d misfit = o.position - o.offset - o.at.Apply(X) - o.at.Apply(state.u);
+    const double way = std::min((seen.whitening * misfit).norm() * seen.sd, diagonal);
+    ways.way[seen.index] = way;
+    ways.sd[seen.index] = seen.sd;
+    ways.slack[seen.index] = std::hypot(way * way, ways.usual * ways.usual) / (2 * diagonal);
+  }
+  return ways;
+}
+
+// Two opposite forces beside a marker explain any place of it, so a search that trusts all markers
+// finds them. Here each step is the cheaper one of two: another force, or an observation left out.
 std::vector<int> LocationEstimator::State::Screen(const std::vector<Observation>& observations,
                                                   const std::vector<char>& rejected,
                                                   std::vector<TrialForce> trials) const {
-  const Eigen::Matrix3Xd& X = solver->body().mesh.nodes;
-  const double usual = Distance(state.u, observations);
-  std::vector<double> way(observations.size(), 0), slack(observations.size(), 0);  // m
-  const std::vector<WhitenedObservation> near = WhitenAll(observations, rejected, slack);
-  for (const WhitenedObservation& seen : near) {
-    const Observation& o = *seen.observation;
-    const Eigen::Vector3d misfit = o.position - o.offset - o.at.Apply(X) - o.at.Apply(state.u);
-    way[seen.index] = std::min((seen.whitening * misfit).norm() * seen.sd, diagonal);
-    slack[seen.index] = std::hypot(std::pow(way[seen.index], 2), usual * usual) / (2 * diagonal);
-  }
-  const int most = static_cast<int>(options.estimator.max_rejected_share *
-                                    static_cast<double>(observations.size())) -
-                   static_cast<int>(std::count(rejected.begin(), rejected.end(), char{1}));
+  Ways ways = WaysLeft(observations, rejected);
+  const auto most = static_cast<size_t>(
+      std::max(0, static_cast<int>(options.estimator.max_rejected_share *
+                                   static_cast<double>(observations.size())) -
+                      static_cast<int>(std::count(rejected.begin(), rejected.end(), char{1}))));
   std::vector<int> out;
-  LinearisedPoints points;
   std::vector<WhitenedObservation> used;
-  while (static_cast<int>(out.size()) < most) {
-    used = WhitenAll(observations, rejected, slack);
-    points = Linearise(used, observations);
-    double chi2 = Refine(points, &trials);
-    const Eigen::Index weightless = 3 * static_cast<Eigen::Index>(out.size());
-    if (!std::isfinite(chi2) || IsPlausible(chi2, points.b.size() - weightless, trials)) break;
+  Eigen::Index rows_out = 0;
+  while (out.size() < most) {
+    used = WhitenAll(observations, rejected, ways.slack);
+    const LinearisedPoints points = Linearise(used, observations);
+    const double chi2 = Refine(points, &trials);
+    if (!std::isfinite(chi2) || IsPlausible(chi2, points.b.size() - rows_out, trials)) break;
     const std::vector<double> excesses =
         Excesses(used, points, Evaluate(points, faces, candidates, trials));
     int worst = -1;
     for (size_t i = 0; i < used.size(); ++i) {
-      const bool in = std::isfinite(slack[used[i].index]);
+      const bool in = std::isfinite(ways.slack[used[i].index]);
       if (in && excesses[i] > (worst < 0 ? 1 : excesses[worst])) worst = static_cast<int>(i);
     }
-    const double before = Total(chi2, trials);
     double nearest = NAN, with_force = chi2;
     std::vector<TrialForce> grown = Another(points, trials, &with_force, &nearest);
-    const double by_force = grown.empty() ? 0 : before - Total(with_force, grown);
-    const double price =
-        geometry::ChiSquareQuantile(1 - options.estimator.rejection_probability, 3);
-    const double by_leaving_out = worst < 0 ? 0 : (excesses[worst] - 1) * price;
+    const double by_force = grown.empty() ? 0 : Total(chi2, trials) - Total(with_force, grown);
+    const double by_leaving_out =
+        worst < 0 ? 0
+                  : (excesses[worst] - 1) *
+                        geometry::ChiSquareQuantile(1 - options.estimator.rejection_probability,
+                                                    static_cast<int>(used[worst].whitening.rows()));
     if (!(std::max(by_force, by_leaving_out) > 0)) break;
     if (by_force >= by_leaving_out) {
       trials = std::move(grown);
     } else {
       out.push_back(used[worst].index);
-      slack[out.back()] = kInfinite;
+      rows_out += used[worst].whitening.rows();
+      ways.slack[out.back()] = kInfinite;
     }
   }
-  if (used.empty()) return out;
-  const Eigen::VectorXd moved =
-      response.transpose() * (NodalForces(trials) - state.load.forces).reshaped();
-  for (size_t i = 0; i < used.size() && static_cast<int>(out.size()) < most; ++i) {
-    const int o = used[i].index;
-    if (!std::isfinite(slack[o]) || slack[o] < near[i].sd) continue;
-    const double by_forces = moved.segment<3>(3 * static_cast<Eigen::Index>(i)).norm();
-    const double error = std::pow(std::max(by_forces, usual), 2) / (2 * diagonal);
-    if (way[o] > kTooFar * by_forces + kBeyond * std::hypot(error, near[i].sd)) out.push_back(o);
+  for (const int o : TooFar(ways, used, trials)) {
+    if (out.size() < most) out.push_back(o);
   }
   return out;
+}
+
+std::vector<int> LocationEstimator::State::TooFar(const Ways& ways,
+                                                  const std::vector<WhitenedObservation>& used,
+                                                  const std::vector<TrialForce>& trials) const {
+  std::vector<int> far;
+  if (used.empty()) return far;
+  const Eigen::VectorXd moved =
+      response.transpose() * (NodalForces(trials) - state.load.forces).reshaped();
+  for (size_t i = 0; i < used.size(); ++i) {
+    const int o = used[i].index;
+    if (!std::isfinite(ways.slack[o]) || ways.slack[o] < ways.sd[o]) continue;
+    const double by_forces = moved.segment<3>(3 * static_cast<Eigen::Index>(i)).norm();
+    const double error = std::pow(std::max(by_forces, ways.usual), 2) / (2 * diagonal);
+    if (ways.way[o] > kTooFar * by_forces + kBeyond * std::hypot(error, ways.sd[o])) {
+      far.push_back(o);
+    }
+  }
+  return far;
 }
 
 // One by one: wrong ones are not to speak for each other.

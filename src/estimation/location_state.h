@@ -57,10 +57,21 @@ struct LocationEstimator::State {
   // The observation that fits worst and cannot be right; −1 if there is none.
   int WorstOf(const std::vector<WhitenedObservation>& used, const LinearisedPoints& points,
               const LocationResidual& at) const;
-  // Which observations another force should not be believed for, from forces at hand: see
-  // location_screen.cc. Indices among the caller's.
+  // How far each observation is from where the body stands, m.
+  struct Ways {
+    std::vector<double> way, sd;  // per observation of the caller's; sd of its surest coordinate
+    std::vector<double> slack;    // that the linear answer may be wrong by; infinite: left out
+    double usual;                 // of all but as many as may be rejected
+  };
+  Ways WaysLeft(const std::vector<Observation>& observations,
+                const std::vector<char>& rejected) const;
+  // Which observations another force should not be believed for, from forces at hand: indices among
+  // the caller's.
   std::vector<int> Screen(const std::vector<Observation>& observations,
                           const std::vector<char>& rejected, std::vector<TrialForce> trials) const;
+  // Those that forces, found from the others, would have to move much further than they do.
+  std::vector<int> TooFar(const Ways& ways, const std::vector<WhitenedObservation>& used,
+                          const std::vector<TrialForce>& trials) const;
   // Those of the rejected ones that forces found without them explain.
   std::vector<int> Explained(const std::vector<Observation>& observations,
                              const std::vector<char>& rejected, double slack,
