@@ -57,8 +57,7 @@ std::filesystem::path Target(const RegisterArguments& arguments) {
     throw base::InputError("--in-place", "the scene names no file for it under \"measured: rig\"",
                            "Write for example: measured: {file: take.csv, rig: capture.yaml}");
   }
-  const std::filesystem::path target =
-      arguments.in_place ? rig : std::filesystem::path(arguments.out);
+  std::filesystem::path target = arguments.in_place ? rig : std::filesystem::path(arguments.out);
   std::error_code ignored;
   if (!scene.measured) scene::CheckCanHoldPlace(rig, target);
   const std::filesystem::path points =

@@ -88,6 +88,7 @@ LocationSpacing SpacingOf(const std::vector<ExpectedError>& errors) {
   if (errors.empty()) return spacing;
   const double radius = std::sqrt(geometry::ChiSquareQuantile(kInRegion, 2));
   std::vector<double> widths;
+  widths.reserve(errors.size());
   for (const ExpectedError& error : errors) widths.push_back(2 * radius * error.location_major);
   std::sort(widths.begin(), widths.end());
   spacing.median = widths[widths.size() / 2];

@@ -84,7 +84,7 @@ const std::vector<LocationCandidate>& LocationEstimator::candidates() const {
 }
 
 std::vector<LocatedForce> LocationEstimator::Floor(const std::vector<Observation>& observations,
-                                                   std::vector<LocatedForce> forces) const {
+                                                   const std::vector<LocatedForce>& forces) const {
   State& s = *state_;
   std::vector<TrialForce> trials;
   for (const LocatedForce& force : forces) {

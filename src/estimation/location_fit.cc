@@ -167,7 +167,7 @@ double FitIntensities(const LinearisedPoints& points, const ForceFaces& faces,
   std::vector<int> all;
   for (const TrialForce& force : *forces) {
     const PlacedPatch placed = faces.Place(force.at, candidates[force.candidate]);
-    problem.A.push_back(points.Of(placed.patch.weights) * placed.directions);
+    problem.A.emplace_back(points.Of(placed.patch.weights) * placed.directions);
     problem.push.push_back(candidates[force.candidate].direction == ForceDirection::kPush);
     all.push_back(static_cast<int>(all.size()));
   }

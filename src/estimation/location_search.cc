@@ -39,7 +39,7 @@ GroupedProblem LocationEstimator::State::AtCandidates(const LinearisedPoints& po
   problem.b = points.b;
   for (size_t c = 0; c < candidates.size(); ++c) {
     const PlacedPatch& placed = candidate_patches[c];
-    problem.A.push_back(points.Of(placed.patch.weights) * placed.directions);
+    problem.A.emplace_back(points.Of(placed.patch.weights) * placed.directions);
     problem.push.push_back(candidates[c].direction == ForceDirection::kPush);
   }
   return problem;
@@ -301,11 +301,11 @@ std::vector<TrialForce> LocationEstimator::State::Search(const LinearisedPoints&
                                                          double* chi2, Rivals* rivals) const {
   if (options.method == LocationMethod::kThreshold) return Survivors(points, chi2);
   if (options.method == LocationMethod::kCandidates) return Likeliest(points, chi2);
-  const std::vector<TrialForce> best = SearchFrom(points, from, chi2, rivals);
+  std::vector<TrialForce> best = SearchFrom(points, from, chi2, rivals);
   if (!from.empty() && IsPlausible(*chi2, points.b.size(), best)) return best;
   double chi2_anew = INFINITY;
   Rivals rivals_anew;
-  const std::vector<TrialForce> anew =
+  std::vector<TrialForce> anew =
       SearchFrom(points, Likeliest(points, &chi2_anew), &chi2_anew, &rivals_anew);
   const double cost = Total(*chi2, best), cost_anew = Total(chi2_anew, anew);
   const bool same = SameAnswer(best, anew);

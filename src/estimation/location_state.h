@@ -25,10 +25,10 @@ struct LocationEstimator::State {
         std::vector<LocationCandidate> candidates_in, const LocationOptions& options_in);
 
   // --- The body.
-  fem::SolveSummary MoveTo(const Eigen::Matrix3Xd& forces, const fem::Actuation& told,
+  fem::SolveSummary MoveTo(const Eigen::Matrix3Xd& nodal, const fem::Actuation& told,
                            double tolerance, bool continued,
                            std::optional<int> max_load_halvings = std::nullopt);
-  Eigen::Matrix3Xd NodalForces(const std::vector<TrialForce>& forces) const;
+  Eigen::Matrix3Xd NodalForces(const std::vector<TrialForce>& trials) const;
 
   // --- The observations, linearised where the body stands.
   // Computes the response of the body to forces on the observed points, unless what it has is for
@@ -44,7 +44,7 @@ struct LocationEstimator::State {
   std::vector<WhitenedObservation> WhitenAll(const std::vector<Observation>& observations,
                                              const std::vector<char>& rejected,
                                              const std::vector<double>& slack) const;
-  bool IsPossible(const Observation& observation) const;  // finite, and not absurdly far
+  bool IsPossible(const Observation& seen) const;  // finite, and not absurdly far
   double LargestDisplacement(const std::vector<Observation>& observations) const;  // m
   // m, of the way from where the observed points of a shape are to where they were seen: one that
   // no more than all that may be rejected exceed.
@@ -85,7 +85,7 @@ struct LocationEstimator::State {
     std::vector<std::vector<int>> elsewhere;
   };
   double Price(const TrialForce& force) const;  // by which χ² has to fall for it
-  double Total(double chi2, const std::vector<TrialForce>& forces) const;
+  double Total(double chi2, const std::vector<TrialForce>& trials) const;
   GroupedProblem AtCandidates(const LinearisedPoints& points) const;
   std::vector<TrialForce> ForcesOf(const Subset& subset) const;
   std::vector<TrialForce> Likeliest(const LinearisedPoints& points, double* chi2) const;
@@ -93,31 +93,31 @@ struct LocationEstimator::State {
   std::vector<TrialForce> Search(const LinearisedPoints& points,
                                  const std::vector<TrialForce>& from, double* chi2,
                                  Rivals* rivals) const;
-  std::vector<TrialForce> SearchFrom(const LinearisedPoints& points, std::vector<TrialForce> from,
+  std::vector<TrialForce> SearchFrom(const LinearisedPoints& points, std::vector<TrialForce> trials,
                                      double* chi2, Rivals* rivals) const;
   bool SameAnswer(const std::vector<TrialForce>& a, const std::vector<TrialForce>& b) const;
-  double Refine(const LinearisedPoints& points, std::vector<TrialForce>* forces) const;
-  bool IsPlausible(double chi2, Eigen::Index rows, const std::vector<TrialForce>& forces) const;
+  double Refine(const LinearisedPoints& points, std::vector<TrialForce>* trials) const;
+  bool IsPlausible(double chi2, Eigen::Index rows, const std::vector<TrialForce>& trials) const;
   // χ² with a force at each candidate besides, those at hand giving way: the best few first.
   std::vector<std::pair<double, int>> Starts(const LinearisedPoints& points,
-                                             const std::vector<TrialForce>& forces) const;
+                                             const std::vector<TrialForce>& trials) const;
   // One more force, near the candidate at which it explains most; empty if none makes them
   // likelier, `nearest` then saying what the likeliest costs.
   std::vector<TrialForce> Another(const LinearisedPoints& points,
-                                  const std::vector<TrialForce>& forces, double* chi2,
+                                  const std::vector<TrialForce>& trials, double* chi2,
                                   double* nearest) const;
   // Each makes the forces likelier by one kind of change if it can; if not, it adds to the rivals.
-  bool Prune(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
+  bool Prune(const LinearisedPoints& points, std::vector<TrialForce>* trials, double* chi2,
              Rivals* rivals) const;
-  bool Grow(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
+  bool Grow(const LinearisedPoints& points, std::vector<TrialForce>* trials, double* chi2,
             Rivals* rivals) const;
-  bool ChangeFace(const LinearisedPoints& points, std::vector<TrialForce>* forces, double* chi2,
+  bool ChangeFace(const LinearisedPoints& points, std::vector<TrialForce>* trials, double* chi2,
                   Rivals* rivals) const;
   std::vector<TrialForce> Survivors(const LinearisedPoints& points, double* chi2) const;
   // Gives them the identities of those of `before` that are nearest, then of those that have
   // vanished, new ones to the others.
   void Identify(const std::vector<TrialForce>& before, const std::vector<GoneForce>& vanished,
-                std::vector<TrialForce>* forces);
+                std::vector<TrialForce>* trials);
   // They are the last ones from now on; those that are no more have gone.
   void Remember(const std::vector<TrialForce>& now);
 
@@ -130,9 +130,9 @@ struct LocationEstimator::State {
   // From a shape, if there is one, else from the equilibrium under the last forces.
   LocationEstimate Converge(const std::vector<Observation>& observations,
                             const fem::Actuation& told, const fem::Equilibrium* shape);
-  void Conclude(Round* round, LocationEstimate* estimate);
+  void Conclude(Round* last, LocationEstimate* estimate);
   // Places, forces and their covariances; false if they are not determined, with the culprit.
-  bool Describe(const LinearisedPoints& points, const std::vector<TrialForce>& forces,
+  bool Describe(const LinearisedPoints& points, const std::vector<TrialForce>& trials,
                 std::vector<LocatedForce>* located, std::string* culprit) const;
   void FindAlternatives(const Round& round, LocationEstimate* estimate) const;
   int FaceOf(const mesh::SurfacePoint& at) const { return faces.walk().region()[at.triangle]; }

@@ -38,7 +38,7 @@ struct JointQuestion {
   JointQuestion(const camera::Rig& rig, const Eigen::Isometry3d& T_rig_robot,
                 const std::vector<MovingFeature>& predicted,
                 const std::vector<CameraDetections>& cameras, double threshold_displacement,
-                const ObserveOptions& options, const std::vector<DotLook>& looks);
+                const ObserveOptions& observe, const std::vector<DotLook>& looks);
   JointSightings Answer(const allocation::JointAllocation& found) const;
 
   size_t num_features;
@@ -56,6 +56,7 @@ JointQuestion::JointQuestion(const camera::Rig& rig, const Eigen::Isometry3d& T_
                              const std::vector<DotLook>& looks)
     : num_features(predicted.size()) {
   std::vector<PredictedFeature> features;
+  features.reserve(predicted.size());
   for (const MovingFeature& feature : predicted) features.push_back(feature.at);
   options.allocation = observe.allocation;
   options.detection_probability = observe.detection_probability;

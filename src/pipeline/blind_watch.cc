@@ -36,7 +36,7 @@ std::optional<BlindWatch::Misfit> BlindWatch::Compare(const Estimated& estimated
   for (const MarkerObservation& observation : observations) {
     const estimation::Observation& seen = observation.seen;
     if (seen.whitening.rows() < 3 || !seen.position.allFinite()) continue;
-    model.push_back(seen.at.Apply(X + u) + seen.offset);
+    model.emplace_back(seen.at.Apply(X + u) + seen.offset);
     measured.push_back(seen.position);
     displacement = std::max(displacement, seen.at.Apply(u).norm());
   }

@@ -121,9 +121,9 @@ std::string HintAtOtherBoard(const Board& board, const std::vector<cv::Mat>& pic
   for (const cv::Mat& picture : pictures) {
     const std::string mistake = vision::ExplainMissingBoard(picture, board);
     if (!mistake.empty()) return "Instead, " + mistake + ".";
-    const std::string markers = OtherMarkers(board, picture);
+    std::string markers = OtherMarkers(board, picture);
     if (!markers.empty()) return markers;
-    const std::string chessboard = OtherChessboard(board, picture);
+    std::string chessboard = OtherChessboard(board, picture);
     if (!chessboard.empty()) return chessboard;
   }
   return "Nothing else was recognised either. Check that the whole board is in the picture, sharp, "

@@ -19,7 +19,7 @@ CameraSource::CameraSource(const scene::Scene& scene, const RunOptions& options)
 
 Standing CameraSource::Start(const Tell& tell) {
   feed_.Start(tell);
-  const Standing standing = FindRig(scene_, rig_, Detector(scene_, rig_), feed_.FirstFrames());
+  Standing standing = FindRig(scene_, rig_, Detector(scene_, rig_), feed_.FirstFrames());
   watch_.emplace(scene_, rig_, standing, options_.registration_frames, tell);
   return standing;
 }

@@ -48,6 +48,7 @@ std::vector<std::vector<int>> Groups(const mesh::TetMesh& mesh, const Eigen::Vec
   std::map<int, std::vector<int>> groups;
   for (const int e : chosen) groups[set[mesh.elements(0, e)]].push_back(e);
   std::vector<std::vector<int>> list;
+  list.reserve(groups.size());
   for (auto& [number, cells] : groups) list.push_back(std::move(cells));
   return list;
 }

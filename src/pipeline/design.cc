@@ -36,6 +36,7 @@ double Quantile(std::vector<double> values, double share) {
 
 std::vector<double> Locations(const std::vector<ExpectedError>& errors) {
   std::vector<double> values;
+  values.reserve(errors.size());
   for (const ExpectedError& error : errors) values.push_back(error.location);
   return values;
 }
@@ -112,6 +113,7 @@ class Job {
 
 std::vector<design::PlacedLoad> Job::Place(const std::vector<mesh::SurfacePoint>& places) const {
   std::vector<design::PlacedLoad> loads;
+  loads.reserve(places.size());
   for (const mesh::SurfacePoint& at : places) {
     loads.emplace_back(world_.surface, world_.mesh().nodes,
                        LoadAt(world_, scene_, at, options_.load), scene_.forces.patch);
@@ -186,6 +188,7 @@ void Job::Choose(const ExpectedErrors& errors) {
 LayoutErrors Job::Judge(const ExpectedErrors& errors, const std::vector<int>& layout) const {
   const std::vector<ExpectedError> expected = errors.Expect(layout);
   std::vector<double> forces;
+  forces.reserve(expected.size());
   for (const ExpectedError& error : expected) forces.push_back(error.force);
   LayoutErrors judged;
   judged.location = design::MedianLocation(expected);
@@ -211,18 +214,21 @@ void Job::CompareWithRandom(const ExpectedErrors& errors) {
 
 Eigen::MatrixXd Job::ResponseOf(const std::vector<int>& layout) {
   std::vector<mesh::NodalWeights> points;
+  points.reserve(layout.size());
   for (const int i : layout) points.push_back(points_[i]);
   return design::ResponseTo(world_.solver.get(), state_, points);
 }
 
 std::vector<design::MarkerSight> Job::SightsOf(const std::vector<int>& layout) const {
   std::vector<design::MarkerSight> sights;
+  sights.reserve(layout.size());
   for (const int i : layout) sights.push_back(sights_[i]);
   return sights;
 }
 
 std::vector<Eigen::Vector3d> Job::Positions(const std::vector<int>& layout) const {
   std::vector<Eigen::Vector3d> positions;
+  positions.reserve(layout.size());
   for (const int i : layout) positions.push_back(sights_[i].position);
   return positions;
 }

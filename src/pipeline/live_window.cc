@@ -13,8 +13,8 @@
 namespace softforce::pipeline {
 namespace {
 
-constexpr int kWidth = 1280;     // px, at most
-constexpr int kKeyWait_ms = 30;  // between looks for keys and new frames
+constexpr int kWidth = 1280;  // px, at most
+constexpr int kKeyWait = 30;  // ms, between looks for keys and new frames
 constexpr int kEscape = 27;
 constexpr int kLine = 24;  // px
 constexpr double kFontScale = 0.5;
@@ -126,7 +126,7 @@ void LiveWindow::Work() {
     drawn = newest;
     if (drawn) page = Page(picture, drawn->result.frame);
     cv::imshow(title_, page);
-    Press(cv::waitKey(kKeyWait_ms), page);
+    Press(cv::waitKey(kKeyWait), page);
     if (cv::getWindowProperty(title_, cv::WND_PROP_VISIBLE) < 1) return;
   }
   cv::destroyWindow(title_);

@@ -103,7 +103,7 @@ std::vector<std::string> Caption(const scene::Scene& scene, const FrameResult& r
   if (!result.ok()) {
     lines.push_back(fmt::format("no forces: {}", estimation::Name(result.status)));
   } else if (result.forces.empty()) {
-    lines.push_back("no force");
+    lines.emplace_back("no force");
   }
   if (std::isfinite(result.probability) && !result.forces.empty()) {
     const bool near_1 = result.probability > kNearlyCertain;

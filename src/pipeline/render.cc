@@ -35,7 +35,7 @@ Json ReadSummary(const fs::path& results) {
     throw base::InputError(file.string(), "is not there or cannot be read",
                            "Give the folder that 'softforce run' wrote its results to (--out).");
   }
-  const Json summary = Json::parse(stream, nullptr, false);
+  Json summary = Json::parse(stream, nullptr, false);
   if (!summary.is_object() || !summary.contains("files") || !summary["files"].is_object() ||
       !summary["files"].contains("scene")) {
     throw base::InputError(file.string(), "does not say what the run was made from (\"files\")",
@@ -97,7 +97,7 @@ std::vector<std::string> Changes(const Json& summary, const std::vector<fs::path
 double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 fs::path OutFor(const fs::path& results, const RenderOptions& options) {
-  const fs::path out = options.out.empty() ? results / "overlay.mp4" : options.out;
+  fs::path out = options.out.empty() ? results / "overlay.mp4" : options.out;
   if (out.extension() == ".mp4") return out;
   throw base::InputError("-o " + out.string(), "is no .mp4 file",
                          "The overlay is a video: choose a name that ends in .mp4.");

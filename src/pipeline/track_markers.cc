@@ -168,6 +168,7 @@ bool Tracker::AllocateAgain(const std::vector<CameraDetections>& detections, dou
   LeaveOutUnconfirmed(features, &found.sightings);
   const bool changed = found.sightings.dots != allocated->sightings.dots;
   std::vector<PredictedFeature> predicted;
+  predicted.reserve(features.size());
   for (const MovingFeature& feature : features) predicted.push_back(feature.at);
   allocated->sightings = std::move(found.sightings);
   allocated->delta = std::move(found.delta);

@@ -22,8 +22,8 @@ class ColourScale {
   // The same by the number of the colour, 0 to kColours - 1.
   const cv::Vec3b& Number(float number) const {
     // In this order NaN ends up at the lower end.
-    const float clamped = std::min(std::max(0.0f, number), kColours - 1.0f);
-    return colours_[static_cast<size_t>(clamped + 0.5f)];
+    const float rounded = std::min(std::max(0.5f, number + 0.5f), kColours - 0.5f);
+    return colours_[static_cast<size_t>(rounded)];
   }
 
  private:

@@ -20,7 +20,7 @@ constexpr double kSpot = 4;                                         // px, radiu
 // A value axis that goes up: linear from 0, or logarithmic over whole decades.
 class Axis {
  public:
-  Axis(const BarFigure& figure) : logarithmic_(figure.logarithmic) {
+  explicit Axis(const BarFigure& figure) : logarithmic_(figure.logarithmic) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     for (const BarSeries& series : figure.series) {
       for (const double value : series.values) {

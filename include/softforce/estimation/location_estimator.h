@@ -120,7 +120,7 @@ class LocationEstimator {
   // the noise and the place of the rig, were the model exact: the same forces with covariances
   // set, at the present state. Empty if they cannot be told.
   std::vector<LocatedForce> Floor(const std::vector<Observation>& observations,
-                                  std::vector<LocatedForce> forces) const;
+                                  const std::vector<LocatedForce>& forces) const;
 
  private:
   struct State;
